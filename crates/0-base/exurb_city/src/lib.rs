@@ -1,0 +1,1 @@
+//! The city model: streets, blocks, parcels, buildings, features, provenance.

@@ -1,0 +1,47 @@
+//! Plane geometry in metres on a millimetre grid.
+//!
+//! Stored coordinates are integers: [`GridPoint`] counts millimetres in a city's local frame, so that
+//! touching, equality, noding and export are exact. Algorithms compute with [`Vec2`] in metres and
+//! round once. Libraries for polygons (`geo`), triangulations (`spade`) and projections (`proj4rs`)
+//! are wrapped here; no other crate names them.
+//!
+//! | part | what it holds |
+//! |---|---|
+//! | [`grid`] | the 1 mm grid and its exact predicates |
+//! | [`polyline`] | lengths, positions, curvature and distances of lines |
+//! | [`polygon`] | polygons with holes |
+//! | [`oriented_box`] | smallest enclosing rectangle |
+//! | [`overlay`] | intersection, difference, union |
+//! | [`offset`] | insets of polygons and carriageways of lines |
+//! | [`segment_index`] | segments near a box, while they come and go |
+//! | [`point_index`] | points near a point, while they come and go |
+//! | [`projection`] | longitude and latitude to local metres and back |
+//! | [`trig`] | trigonometry that is the same on every machine |
+//!
+//! ```
+//! use exurb_geom::{GridPoint, Polygon};
+//! let square = Polygon::rectangle(GridPoint::m(0.0, 0.0), GridPoint::m(10.0, 20.0));
+//! assert_eq!(square.area_m2(), 200.0);
+//! ```
+
+mod bounds;
+mod convert;
+pub mod grid;
+pub mod offset;
+pub mod oriented_box;
+pub mod overlay;
+pub mod point_index;
+pub mod polygon;
+pub mod polyline;
+pub mod projection;
+pub mod segment_index;
+pub mod trig;
+
+pub use bounds::Bounds;
+pub use glam::DVec2 as Vec2;
+pub use grid::GridPoint;
+pub use oriented_box::OrientedBox;
+pub use point_index::PointIndex;
+pub use polygon::Polygon;
+pub use projection::{Frame, LonLat};
+pub use segment_index::SegmentIndex;

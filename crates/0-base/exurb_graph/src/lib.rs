@@ -1,0 +1,1 @@
+//! Planar street graph: darts, faces, edits and their laws.

@@ -1,0 +1,1 @@
+//! The one trait of every method: parameters, runs, cards.

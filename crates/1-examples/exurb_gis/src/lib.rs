@@ -1,0 +1,1 @@
+//! GeoPackage and GeoJSON both ways.

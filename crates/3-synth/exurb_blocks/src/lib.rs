@@ -1,0 +1,1 @@
+//! Blocks filled by example: parcels and footprints.

@@ -1,0 +1,1 @@
+//! Heights, roofs and shapes of buildings by example.

@@ -1,0 +1,1 @@
+//! Operations in order: recipes in TOML.

@@ -1,0 +1,1 @@
+//! The city as meshes: GLB, OBJ and perspective pictures.

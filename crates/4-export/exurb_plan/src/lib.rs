@@ -1,0 +1,1 @@
+//! The map from above, as SVG and PNG.

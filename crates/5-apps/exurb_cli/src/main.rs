@@ -1,0 +1,2 @@
+//! The `exurb` command.
+fn main() {}
