@@ -1,1 +1,40 @@
-//! The city model: streets, blocks, parcels, buildings, features, provenance.
+//! The city model: one document type for what was imported and what was synthesised.
+//!
+//! A [`City`] holds streets, blocks, parcels, buildings, features, water and land use in a local
+//! frame on the millimetre grid, and for every element where it came from. An example is just a
+//! city. Layers are shared (`Arc`), so that a city is cheap to copy.
+//!
+//! | part | what it holds |
+//! |---|---|
+//! | [`City`] | the document |
+//! | [`StreetMap`] | streets as imported: ways with every tag we keep |
+//! | [`StreetGraph`] | streets as every learner, synthesiser and measure sees them |
+//! | [`role`] | which OSM classes are main, local, other |
+//! | [`block`] | blocks: the faces of the graph less the carriageways |
+//! | [`parcel`], [`building`], [`feature`], [`area`] | what lies in the blocks |
+//! | [`provenance`] | origin and source of elements |
+//! | [`Edit`] | what an operation changes |
+
+pub mod area;
+pub mod block;
+pub mod building;
+mod city;
+mod edit;
+pub mod feature;
+pub mod parcel;
+pub mod provenance;
+pub mod role;
+pub mod street_graph;
+pub mod street_map;
+
+pub use area::Area;
+pub use block::{Block, BlockClass};
+pub use building::{Building, Roof};
+pub use city::{City, Metadata};
+pub use edit::Edit;
+pub use feature::{Feature, FeatureShape};
+pub use parcel::Parcel;
+pub use provenance::{Origin, Provenance};
+pub use role::{Class, Role};
+pub use street_graph::{Junction, Street, StreetGraph};
+pub use street_map::{StreetMap, Way};

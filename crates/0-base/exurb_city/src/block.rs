@@ -1,0 +1,154 @@
+//! Blocks: the faces between the streets less half of each street's carriageway.
+
+use std::sync::Arc;
+
+use exurb_geom::{Bounds, GridPoint, Polygon, SegmentIndex, grid, offset, overlay};
+use exurb_graph::{EdgeId, Face, FaceId, Faces};
+use rayon::prelude::*;
+
+use crate::{Provenance, StreetGraph};
+
+/// Is the block wide enough to build on?
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BlockClass {
+    /// An ordinary block.
+    Block,
+    /// Mean width under 10 m, such as the strip between two carriageways: never built on.
+    Island,
+}
+
+/// A block: the ground inside a face of the street graph, up to the kerbs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Block {
+    /// Its number, from 1.
+    pub id: u32,
+    /// Kerb line.
+    pub polygon: Polygon,
+    /// Area of the face of the street centrelines, in m².
+    pub face_area_m2: f64,
+    /// Width of the pavement inside the kerb, in metres: parcels begin behind it.
+    pub pavement_m: f64,
+    /// Prevailing land use, where known.
+    pub land_use: Option<Arc<str>>,
+    /// Block or island.
+    pub class: BlockClass,
+    /// Streets along its sides, in order around the face, each once.
+    pub sides: Vec<EdgeId>,
+    /// Dead-end streets inside.
+    pub dead_ends: Vec<EdgeId>,
+    /// Where it came from.
+    pub provenance: Provenance,
+}
+
+/// Mean width below which a block is an island, in metres.
+pub const ISLAND_WIDTH_M: f64 = 10.0;
+/// Default width of the pavement, in metres (Hartmann 2018, section 5.1).
+pub const PAVEMENT_M: f64 = 2.0;
+/// Kerb areas below this are rounding, not blocks, in m².
+const LEAST_AREA_M2: f64 = 1.0;
+
+impl Block {
+    /// The ground for parcels: the block less its pavement. May fall apart; largest first.
+    pub fn buildable(&self) -> Vec<Polygon> {
+        offset::inset(&self.polygon, self.pavement_m)
+    }
+}
+
+/// Edges that bound blocks: all but tunnels and those that cross another street without a node
+/// (bridges over streets).
+pub fn bounding_edges(graph: &StreetGraph) -> Vec<bool> {
+    let mut bounds = vec![false; graph.edge_bound()];
+    let mut index = SegmentIndex::new(50.0);
+    for (id, edge) in graph.edges() {
+        bounds[id.index()] = !edge.data.tunnel;
+        if edge.data.crossing_level() == 0 {
+            index.insert_line(id.0, &edge.line_m());
+        }
+    }
+    for (id, edge) in graph.edges().filter(|(_, e)| e.data.crossing_level() != 0) {
+        let line = edge.line();
+        let crosses = line.windows(2).any(|w| {
+            let (a, b) = (w[0].to_m(), w[1].to_m());
+            let mut hit = false;
+            index.visit(Bounds { min: a.min(b), max: a.max(b) }, |e| {
+                hit |= grid::cross_properly(w[0], w[1], GridPoint::round(e.a), GridPoint::round(e.b));
+                !hit
+            });
+            hit
+        });
+        if crosses || edge.data.crossing_level() < 0 {
+            bounds[id.index()] = false;
+        }
+    }
+    bounds
+}
+
+/// The faces of the streets that bound blocks.
+pub fn faces(graph: &StreetGraph) -> Faces {
+    let keep = bounding_edges(graph);
+    Faces::of(graph, |id| keep[id.index()])
+}
+
+/// The blocks of a street graph, in order of faces; a face cut apart by wide streets gives several.
+/// Runs on rayon's current pool; the result does not depend on the number of threads.
+pub fn derive(graph: &StreetGraph) -> Vec<Block> {
+    let faces = faces(graph);
+    let per_face: Vec<Vec<Block>> =
+        faces.list.par_iter().map(|face| blocks_of_face(graph, face)).collect();
+    let mut blocks: Vec<Block> = per_face.into_iter().flatten().collect();
+    for (block, id) in blocks.iter_mut().zip(1..) {
+        block.id = id;
+    }
+    blocks
+}
+
+fn blocks_of_face(graph: &StreetGraph, face: &Face) -> Vec<Block> {
+    let mut sides: Vec<EdgeId> = Vec::new();
+    for dart in face.outline.iter().chain(face.islands.iter().flatten()) {
+        if !sides.contains(&dart.edge()) {
+            sides.push(dart.edge());
+        }
+    }
+    let mut dead_ends = face.inner.clone();
+    dead_ends.sort_unstable();
+    let roads: Vec<Polygon> = sides
+        .iter()
+        .chain(&dead_ends)
+        .flat_map(|id| {
+            let edge = graph.edge(*id);
+            offset::carriageway(&edge.line_m(), edge.data.width_m() / 2.0, offset::Cap::Round)
+        })
+        .collect();
+    let face_area_m2 = face.polygon.area_m2();
+    overlay::difference(&face.polygon, &roads)
+        .into_iter()
+        .filter(|polygon| polygon.area_m2() >= LEAST_AREA_M2)
+        .map(|polygon| {
+            let island = polygon.mean_width_m() < ISLAND_WIDTH_M;
+            Block {
+                id: 0,
+                face_area_m2,
+                pavement_m: PAVEMENT_M,
+                land_use: None,
+                class: if island { BlockClass::Island } else { BlockClass::Block },
+                sides: sides.clone(),
+                dead_ends: dead_ends.clone(),
+                provenance: Provenance::of(crate::Origin::Procedural),
+                polygon,
+            }
+        })
+        .collect()
+}
+
+/// Pairs of faces that share a street, each once with the streets between, in order.
+/// Aliaga 2008, section 3.1.2: the block graph is dual to the street graph.
+pub fn adjacency(faces: &Faces, graph: &StreetGraph) -> Vec<(FaceId, FaceId, EdgeId)> {
+    let left = |d: exurb_graph::Dart| faces.left.get(d.index()).copied().flatten();
+    graph
+        .edges()
+        .filter_map(|(id, _)| {
+            let (a, b) = (left(id.forward())?, left(id.backward())?);
+            (a != b).then(|| (a.min(b), a.max(b), id))
+        })
+        .collect()
+}

@@ -1,0 +1,231 @@
+//! Streets as every learner, synthesiser and measure sees them: planar but for bridges and tunnels,
+//! undirected, nodes where streets meet, end or change level or class.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use exurb_geom::{GridPoint, Polygon};
+use exurb_graph::{EdgeId, Graph, NodeId, noding};
+
+use crate::{Class, Origin, Provenance, Role, StreetMap};
+
+/// What is known of a street.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Street {
+    /// OSM class.
+    pub class: Class,
+    /// Hierarchy level, 0 = main (Aliaga 2008, section 5).
+    pub level: u8,
+    /// Lanes in both directions together; 0 = unknown.
+    pub lanes: u8,
+    /// Width of the carriageway in metres; 0 = unknown. See [`Street::width_m`].
+    pub width_m: f64,
+    /// Driven along the line only.
+    pub oneway: bool,
+    /// On a bridge.
+    pub bridge: bool,
+    /// In a tunnel.
+    pub tunnel: bool,
+    /// Storey, 0 on the ground (OSM's `layer`).
+    pub layer: i8,
+    /// Part of a roundabout.
+    pub roundabout: bool,
+    /// Its name.
+    pub name: Option<Arc<str>>,
+    /// Where it came from.
+    pub provenance: Provenance,
+}
+
+impl Street {
+    /// Its role.
+    pub fn role(&self) -> Role {
+        self.class.role()
+    }
+
+    /// Lanes, by tag or class.
+    pub fn lanes(&self) -> u8 {
+        match self.lanes {
+            0 if self.oneway => self.class.default_lanes().div_ceil(2),
+            0 => self.class.default_lanes(),
+            n => n,
+        }
+    }
+
+    /// Width of the carriageway in metres, by tag, else lanes and class.
+    pub fn width_m(&self) -> f64 {
+        if self.width_m > 0.0 {
+            self.width_m
+        } else {
+            self.class.default_width_m(self.lanes())
+        }
+    }
+
+    /// Streets cross without meeting when their levels differ. Bridges and tunnels without a
+    /// `layer` stand one level over and under the ground.
+    pub fn crossing_level(&self) -> i32 {
+        match (self.layer, self.bridge, self.tunnel) {
+            (0, true, false) => 1,
+            (0, false, true) => -1,
+            (layer, ..) => i32::from(layer),
+        }
+    }
+
+    /// May a node of degree 2 between the two streets be dissolved?
+    pub fn continues(&self, other: &Self) -> bool {
+        self.class == other.class
+            && self.crossing_level() == other.crossing_level()
+            && self.bridge == other.bridge
+            && self.tunnel == other.tunnel
+            && self.roundabout == other.roundabout
+            && self.provenance.origin == other.provenance.origin
+    }
+}
+
+/// What is known of a node of the street graph.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Junction {
+    /// The street runs on outside the modelled area: no dead end.
+    pub cut: bool,
+    /// Height above the terrain's zero in metres.
+    pub z_m: f64,
+}
+
+/// The street graph of a city.
+pub type StreetGraph = Graph<Junction, Street>;
+
+/// How a street graph is derived from an imported map.
+#[derive(Clone, Debug)]
+pub struct Derive {
+    /// Keep service roads and the like, too.
+    pub with_other: bool,
+    /// The map is complete inside this area; streets are clipped to it and cut ends flagged.
+    pub area: Option<Polygon>,
+}
+
+/// Derives the street graph of an imported map.
+///
+/// Steps: 1 filter by role; 2 node ways of one level at every shared node and crossing, and where a
+/// vertex lies within 2 cm of another street (bridges and tunnels pass); 3 drop exact duplicates;
+/// 4 make nodes where ends meet; 5 clip; 6 dissolve nodes of degree 2 between like streets.
+pub fn derive(map: &StreetMap, options: &Derive) -> StreetGraph {
+    let kept = || {
+        map.ways.iter().filter(|w| options.with_other || w.street.role() != Role::Other)
+    };
+    // 2 Ways of different levels meet at shared nodes that are an end of one of them: the foot of a
+    // ramp. Split there first; crossings within a level follow.
+    let mut uses: BTreeMap<i64, (u32, i32, bool)> = BTreeMap::new();
+    for way in kept() {
+        let level = way.street.crossing_level();
+        for (i, id) in way.nodes.iter().enumerate() {
+            let end = i == 0 || i + 1 == way.nodes.len();
+            let entry = uses.entry(*id).or_insert((0, level, false));
+            entry.0 += 1;
+            entry.2 |= entry.1 != level || end;
+        }
+    }
+    let mut lines = Vec::new();
+    for (number, way) in kept().enumerate() {
+        let level = way.street.crossing_level();
+        let mut start = 0;
+        for i in 1..way.line.len() {
+            let shared = way.nodes.get(i).and_then(|id| uses.get(id)).is_some_and(|u| u.0 > 1);
+            if shared || i + 1 == way.line.len() {
+                let points = way.line[start..=i].to_vec();
+                lines.push(noding::Line { points, level, data: number });
+                start = i;
+            }
+        }
+    }
+    let noded = noding::node(lines, noding::Options { snap_m: 0.02, ..Default::default() });
+
+    let streets: Vec<&Street> = kept().map(|w| &w.street).collect();
+    let mut graph = from_lines(
+        noded.into_iter().map(|l| (l.points, streets[l.data].clone())),
+    );
+    if let Some(area) = &options.area {
+        for node in graph.clip(area) {
+            graph.node_mut(node).data.cut = true;
+        }
+    }
+    dissolve_all(&mut graph);
+    graph.compacted()
+}
+
+/// A graph of lines that meet at equal end points; exact duplicates (same line, either direction)
+/// are dropped, the first one stays.
+pub fn from_lines(lines: impl IntoIterator<Item = (Vec<GridPoint>, Street)>) -> StreetGraph {
+    let mut graph = StreetGraph::new();
+    let mut at: BTreeMap<GridPoint, NodeId> = BTreeMap::new();
+    let mut seen = std::collections::BTreeSet::new();
+    for (line, street) in lines {
+        let (Some(first), Some(last)) = (line.first().copied(), line.last().copied()) else {
+            continue;
+        };
+        let mut key = line.clone();
+        if key.iter().rev().lt(key.iter()) {
+            key.reverse();
+        }
+        if !seen.insert(key) {
+            continue;
+        }
+        let mut node =
+            |p, g: &mut StreetGraph| *at.entry(p).or_insert_with(|| g.add_node(p, Junction::default()));
+        let (from, to) = (node(first, &mut graph), node(last, &mut graph));
+        graph.add_edge(from, to, line, street);
+    }
+    graph.remove_isolated_nodes();
+    graph
+}
+
+/// Dissolves every node of degree 2 between streets that continue each other. Cut ends stay.
+pub fn dissolve_all(graph: &mut StreetGraph) {
+    let nodes: Vec<NodeId> = graph.nodes().map(|(id, _)| id).collect();
+    for node in nodes {
+        let [a, b] = graph.darts(node) else { continue };
+        let (a, b) = (*a, *b);
+        let (s, t) = (&graph.edge(a.edge()).data, &graph.edge(b.edge()).data);
+        if !graph.node(node).data.cut && s.continues(t) && same_direction(graph, a, b) {
+            graph.dissolve(node);
+        }
+    }
+}
+
+/// Two oneways meeting head to head must stay apart.
+fn same_direction(graph: &StreetGraph, a: exurb_graph::Dart, b: exurb_graph::Dart) -> bool {
+    let (s, t) = (&graph.edge(a.edge()).data, &graph.edge(b.edge()).data);
+    s.oneway == t.oneway && (!s.oneway || a.is_forward() != b.is_forward())
+}
+
+/// The part of the graph whose edges `keep` accepts, with nodes of degree 2 dissolved.
+pub fn subgraph(graph: &StreetGraph, keep: impl Fn(EdgeId, &Street) -> bool) -> StreetGraph {
+    let mut out = graph.clone();
+    for (id, edge) in graph.edges() {
+        if !keep(id, &edge.data) {
+            out.remove_edge(id);
+        }
+    }
+    out.remove_isolated_nodes();
+    dissolve_all(&mut out);
+    out.compacted()
+}
+
+/// Is the node an intersection: not of degree 2? (Dead ends and cut ends are, changes of layer or
+/// class are not.)
+pub fn is_intersection(graph: &StreetGraph, node: NodeId) -> bool {
+    graph.degree(node) != 2
+}
+
+/// Share of the graph's length by origin: (example, procedural, other); zeros when empty.
+pub fn shares_by_origin(graph: &StreetGraph) -> (f64, f64, f64) {
+    let (mut example, mut procedural, mut other) = (0.0, 0.0, 0.0);
+    for (_, edge) in graph.edges() {
+        let length = edge.length_m();
+        match edge.data.provenance.origin {
+            Origin::Example => example += length,
+            Origin::Procedural => procedural += length,
+            _ => other += length,
+        }
+    }
+    let total: f64 = example + procedural + other;
+    if total == 0.0 { (0.0, 0.0, 0.0) } else { (example / total, procedural / total, other / total) }
+}
