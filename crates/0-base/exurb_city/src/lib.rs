@@ -18,6 +18,7 @@
 pub mod area;
 pub mod block;
 pub mod building;
+mod draft;
 mod city;
 mod edit;
 pub mod feature;
@@ -31,6 +32,7 @@ pub use area::Area;
 pub use block::{Block, BlockClass};
 pub use building::{Building, Roof};
 pub use city::{City, Metadata};
+pub use draft::{Draft, DraftError, ImportOptions, Imported, Part};
 pub use edit::Edit;
 pub use feature::{Feature, FeatureShape};
 pub use parcel::Parcel;
