@@ -152,9 +152,7 @@ fn place_islands<N, E>(
     let boxes: Vec<_> = list.iter().map(|f| (f.polygon.bounds(), f.polygon.area_m2())).collect();
     for (cycles, inner, first) in outsides {
         let at = graph.node(graph.tail(first)).at;
-        let own = |face: &Face| {
-            face.outline.iter().any(|d| graph.node(graph.tail(*d)).at == at)
-        };
+        let own = |face: &Face| face.outline.iter().any(|d| graph.node(graph.tail(*d)).at == at);
         let home = (0..list.len())
             .filter(|i| boxes[*i].0.contains(at.to_m()))
             .filter(|i| list[*i].polygon.contains(at) && !own(&list[*i]))

@@ -47,7 +47,7 @@ impl Dart {
 
     /// Does it run along the edge's line?
     pub fn is_forward(self) -> bool {
-        self.0 % 2 == 0
+        self.0.is_multiple_of(2)
     }
 
     /// The same edge in the other direction.

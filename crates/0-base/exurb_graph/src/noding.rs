@@ -210,7 +210,10 @@ mod tests {
 
     #[test]
     fn shared_inner_vertices_and_touching_ends_split() {
-        let shared = vec![line(&[(-5., 0.), (0., 0.), (5., 0.)], 0), line(&[(0., -5.), (0., 0.), (0., 5.)], 0)];
+        let shared = vec![
+            line(&[(-5., 0.), (0., 0.), (5., 0.)], 0),
+            line(&[(0., -5.), (0., 0.), (0., 5.)], 0),
+        ];
         assert_eq!(node(shared, Options::default()).len(), 4);
         let tee = vec![line(&[(-5., 0.), (5., 0.)], 0), line(&[(0., 5.), (0., 0.)], 0)];
         assert_eq!(node(tee, Options::default()).len(), 3);
@@ -235,7 +238,10 @@ mod tests {
         let fan: Vec<_> = (0..40)
             .map(|i| {
                 let i = f64::from(i);
-                line(&[(i * 7.3, (i * 13.7) % 29.0), (280.0 - i * 6.1, 300.0 + (i * 5.3) % 31.0)], 0)
+                line(
+                    &[(i * 7.3, (i * 13.7) % 29.0), (280.0 - i * 6.1, 300.0 + (i * 5.3) % 31.0)],
+                    0,
+                )
             })
             .collect();
         let noded = node(fan, Options::default());
