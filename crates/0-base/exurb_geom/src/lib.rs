@@ -13,6 +13,7 @@
 //! | [`oriented_box`] | smallest enclosing rectangle |
 //! | [`overlay`] | intersection, difference, union |
 //! | [`offset`] | insets of polygons and carriageways of lines |
+//! | [`segment_grid`] | segments near a segment, for linework that does not change |
 //! | [`segment_index`] | segments near a box, while they come and go |
 //! | [`point_index`] | points near a point, while they come and go |
 //! | [`projection`] | longitude and latitude to local metres and back |
@@ -34,6 +35,7 @@ pub mod point_index;
 pub mod polygon;
 pub mod polyline;
 pub mod projection;
+pub mod segment_grid;
 pub mod segment_index;
 pub mod trig;
 
@@ -44,4 +46,5 @@ pub use oriented_box::OrientedBox;
 pub use point_index::PointIndex;
 pub use polygon::Polygon;
 pub use projection::{Frame, LonLat};
+pub use segment_grid::SegmentGrid;
 pub use segment_index::SegmentIndex;
