@@ -43,6 +43,11 @@ impl Run {
         Self { name: name.to_owned(), ..self.clone() }
     }
 
+    /// The same run with another random seed, for a step that has its own.
+    pub fn seeded(&self, seed: u64) -> Self {
+        Self { seed, ..self.clone() }
+    }
+
     /// The random seed.
     pub fn seed(&self) -> u64 {
         self.seed
