@@ -11,10 +11,14 @@
 //! | [`polyline`] | lengths, positions, curvature and distances of lines |
 //! | [`polygon`] | polygons with holes |
 //! | [`oriented_box`] | smallest enclosing rectangle |
+//! | [`split`] | cutting a polygon along a line |
+//! | [`voronoi`] | borders between groups of points |
 //! | [`overlay`] | intersection, difference, union |
 //! | [`offset`] | insets of polygons and carriageways of lines |
+//! | [`box_grid`] | boxes that meet a box, for a set that does not change |
 //! | [`segment_grid`] | segments near a segment, for linework that does not change |
 //! | [`segment_index`] | segments near a box, while they come and go |
+//! | [`polygon_index`] | which polygon holds a point |
 //! | [`point_index`] | points near a point, while they come and go |
 //! | [`projection`] | longitude and latitude to local metres and back |
 //! | [`trig`] | trigonometry that is the same on every machine |
@@ -26,6 +30,8 @@
 //! ```
 
 mod bounds;
+pub mod box_grid;
+mod cell_table;
 mod convert;
 pub mod grid;
 pub mod offset;
@@ -33,18 +39,23 @@ pub mod oriented_box;
 pub mod overlay;
 pub mod point_index;
 pub mod polygon;
+pub mod polygon_index;
 pub mod polyline;
 pub mod projection;
 pub mod segment_grid;
 pub mod segment_index;
+pub mod split;
 pub mod trig;
+pub mod voronoi;
 
 pub use bounds::Bounds;
+pub use box_grid::BoxGrid;
 pub use glam::DVec2 as Vec2;
 pub use grid::GridPoint;
 pub use oriented_box::OrientedBox;
 pub use point_index::PointIndex;
 pub use polygon::Polygon;
+pub use polygon_index::PolygonIndex;
 pub use projection::{Frame, LonLat};
 pub use segment_grid::SegmentGrid;
 pub use segment_index::SegmentIndex;
