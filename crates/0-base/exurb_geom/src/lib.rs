@@ -18,7 +18,6 @@
 //! | [`box_grid`] | boxes that meet a box, for a set that does not change |
 //! | [`segment_grid`] | segments near a segment, for linework that does not change |
 //! | [`segment_index`] | segments near a box, while they come and go |
-//! | [`polygon_index`] | which polygon holds a point |
 //! | [`point_index`] | points near a point, while they come and go |
 //! | [`projection`] | longitude and latitude to local metres and back |
 //! | [`trig`] | trigonometry that is the same on every machine |
@@ -39,7 +38,6 @@ pub mod oriented_box;
 pub mod overlay;
 pub mod point_index;
 pub mod polygon;
-pub mod polygon_index;
 pub mod polyline;
 pub mod projection;
 pub mod segment_grid;
@@ -55,7 +53,6 @@ pub use grid::GridPoint;
 pub use oriented_box::OrientedBox;
 pub use point_index::PointIndex;
 pub use polygon::Polygon;
-pub use polygon_index::PolygonIndex;
 pub use projection::{Frame, LonLat};
 pub use segment_grid::SegmentGrid;
 pub use segment_index::SegmentIndex;
