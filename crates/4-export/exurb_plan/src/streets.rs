@@ -38,7 +38,7 @@ fn marks<'a>(map: &Map, streets: impl Iterator<Item = (&'a [GridPoint], &'a Stre
     }
     let mut marks = Vec::new();
     for ribbons in storeys.values_mut() {
-        ribbons.sort_by(|a, b| b.class.cmp(&a.class));
+        ribbons.sort_by_key(|r| std::cmp::Reverse(r.class));
         let line = |r: &Ribbon, pen| Mark::new(Shape::Line(r.points.clone()), Paint::pen(pen));
         if !map.sheet.is_figure() {
             marks.extend(ribbons.iter().filter(|r| r.bridge).flat_map(|r| bridge_heads(map, r)));
