@@ -16,6 +16,8 @@ pub struct Draft {
     pub extent: Option<Polygon>,
     /// Streets of every role.
     pub streets: StreetMap,
+    /// Ends where a street breaks off because the file lacks its next node: no dead ends.
+    pub broken_ends: Vec<GridPoint>,
     /// Buildings and parts.
     pub buildings: Vec<Building>,
     /// Parcels.
@@ -75,6 +77,7 @@ impl Draft {
             frame,
             extent: None,
             streets: StreetMap::default(),
+            broken_ends: Vec::new(),
             buildings: Vec::new(),
             parcels: Vec::new(),
             features: Vec::new(),

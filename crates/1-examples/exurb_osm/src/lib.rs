@@ -1,1 +1,33 @@
 //! OpenStreetMap files both ways.
+//!
+//! [`read`] makes a city of OSM XML, PBF or Overpass JSON; [`write_xml()`] and [`write_pbf()`] write one.
+//! All formats go through one list of elements ([`elements`]); what follows is the same for all.
+//!
+//! | part | what it does |
+//! |---|---|
+//! | `read` | formats, unpacking, archive bombs |
+//! | `read_pbf`, `read_xml`, `read_overpass` | the formats |
+//! | `import` | the passes in order: what matters, where it lies, what it is |
+//! | `streets`, `buildings`, `areas`, `features` | the meaning of tags |
+//! | `outline` | rings and polygons of ways and relations |
+
+mod areas;
+mod buildings;
+mod elements;
+mod error;
+mod features;
+mod import;
+mod outline;
+mod pbf_format;
+mod places;
+mod read;
+mod read_overpass;
+mod read_pbf;
+mod read_xml;
+mod streets;
+mod surfaces;
+mod tags;
+
+pub use error::Error;
+pub use import::ATTRIBUTION;
+pub use read::{Format, read, read_bytes};

@@ -1,0 +1,130 @@
+//! From the elements of a file to a city, in passes: 1 which ways and relations matter; 2 where
+//! their nodes lie; 3 streets, buildings, areas and features.
+
+use exurb_city::{Draft, ImportOptions, Imported};
+use exurb_geom::{Frame, GridPoint, LonLat, Polygon};
+
+use crate::elements::{Bounds, Elements};
+use crate::places::{self, Places};
+use crate::{Error, streets, surfaces};
+
+/// Attribution of every OpenStreetMap file.
+pub const ATTRIBUTION: &str = "© OpenStreetMap contributors, ODbL 1.0";
+
+/// The city of sorted elements.
+pub fn city(elements: Elements, file: &str, options: &ImportOptions) -> Result<Imported, Error> {
+    let mut warnings = Vec::new();
+    let extent = elements.bounds.filter(usable);
+    if elements.bounds.is_some() && extent.is_none() {
+        warnings.push(
+            "the bounds the file declares are no place on earth; they are ignored".to_owned(),
+        );
+    }
+    let needed = needed(&elements);
+    let frame = frame(&elements, extent, options, &needed)
+        .map_err(|source| Error::Frame { file: file.to_owned(), source })?;
+    let places = Places::find(&elements, &needed, &frame);
+
+    let mut draft = Draft::new(frame);
+    draft.extent = extent.and_then(|bounds| rectangle(&draft.frame, bounds));
+    let streets = streets::read(&elements, &places);
+    draft.streets.ways = streets.ways;
+    draft.broken_ends = streets.broken_ends;
+    surfaces::read(&elements, &places, &mut draft, &mut warnings);
+
+    draft.metadata.name = name(file).into();
+    draft.metadata.credit(&[ATTRIBUTION.to_owned()]);
+    draft.metadata.credit(&elements.attribution);
+    if elements.misplaced > 0 {
+        let n = elements.misplaced;
+        warnings.push(format!("{n} nodes lie outside ±180 and ±90 degrees; ways are split there"));
+    }
+    drop((elements, places));
+    let mut imported =
+        draft.assemble(options).map_err(|source| Error::Draft { file: file.to_owned(), source })?;
+    imported.warnings.splice(0..0, warnings);
+    Ok(imported)
+}
+
+/// The file's name without folders and endings.
+fn name(file: &str) -> &str {
+    let base = file.rsplit(['/', '\\']).next().unwrap_or(file);
+    base.split_once('.').map_or(base, |(stem, _)| if stem.is_empty() { base } else { stem })
+}
+
+/// Pass 1: the ways whose nodes matter, by their own tags or as members of relations that do.
+fn needed(elements: &Elements) -> Vec<bool> {
+    let mut needed: Vec<bool> = elements
+        .ways
+        .iter()
+        .map(|w| streets::class(&w.tags).is_some() || surfaces::matters(&w.tags))
+        .collect();
+    for relation in &elements.relations {
+        for id in &relation.ways {
+            if let Some(way) = elements.way_index(*id) {
+                needed[way] = true;
+            }
+        }
+    }
+    needed
+}
+
+fn usable(b: &Bounds) -> bool {
+    let corners = [(b[0], b[1]), (b[2], b[3])];
+    b[0] < b[2]
+        && b[1] < b[3]
+        && corners.iter().all(|(lon, lat)| LonLat { lon: *lon, lat: *lat }.is_valid())
+}
+
+/// The frame at the middle of the part asked for, of the declared extent, of the streets, or of
+/// whatever there is.
+fn frame(
+    elements: &Elements,
+    extent: Option<Bounds>,
+    options: &ImportOptions,
+    needed: &[bool],
+) -> Result<Frame, exurb_geom::projection::FrameError> {
+    let asked = options.bbox.map(|[sw, ne]| [sw.lon, sw.lat, ne.lon, ne.lat]);
+    let bounds = asked
+        .filter(usable)
+        .or(extent)
+        .or_else(|| street_bounds(elements))
+        .or_else(|| {
+            let ways = elements.ways.iter().zip(needed).filter(|(_, n)| **n).map(|(w, _)| w);
+            node_bounds(elements, ways.flat_map(|w| elements.refs_of(w)).copied())
+        })
+        .or_else(|| node_bounds(elements, elements.nodes.iter().map(|n| n.id)))
+        .unwrap_or_default();
+    let middle = |a: f64, b: f64| (a + b) / 2.0;
+    Frame::new(LonLat { lon: middle(bounds[0], bounds[2]), lat: middle(bounds[1], bounds[3]) })
+}
+
+fn street_bounds(elements: &Elements) -> Option<Bounds> {
+    let ways = elements.ways.iter().filter(|w| streets::class(&w.tags).is_some());
+    node_bounds(elements, ways.flat_map(|w| elements.refs_of(w)).copied())
+}
+
+fn node_bounds(elements: &Elements, ids: impl Iterator<Item = i64>) -> Option<Bounds> {
+    let mut last = 0;
+    let mut bounds: Option<[i32; 4]> = None;
+    for id in ids {
+        let Some(at) = places::search(&elements.nodes, id, last) else { continue };
+        last = at;
+        let n = elements.nodes[at];
+        let [w, s, e, north] = bounds.unwrap_or([n.lon, n.lat, n.lon, n.lat]);
+        bounds = Some([w.min(n.lon), s.min(n.lat), e.max(n.lon), north.max(n.lat)]);
+    }
+    bounds.map(|b| b.map(places::degrees))
+}
+
+/// The largest axis-parallel rectangle of the frame inside a box of longitude and latitude, whose
+/// sides are a little bent and turned in the plane. `None` when nothing is left.
+fn rectangle(frame: &Frame, [w, s, e, n]: Bounds) -> Option<Polygon> {
+    let at = |lon: f64, lat: f64| frame.project_to_grid(LonLat { lon, lat });
+    let middle = (w + e) / 2.0;
+    let (sw, se, nw, ne) = (at(w, s)?, at(e, s)?, at(w, n)?, at(e, n)?);
+    let (south, north) = (at(middle, s)?, at(middle, n)?);
+    let lo = GridPoint { x: sw.x.max(nw.x), y: sw.y.max(se.y).max(south.y) };
+    let hi = GridPoint { x: se.x.min(ne.x), y: nw.y.min(ne.y).min(north.y) };
+    (lo.x < hi.x && lo.y < hi.y).then(|| Polygon::rectangle(lo, hi))
+}

@@ -1,0 +1,182 @@
+//! Buildings, water, land use, parcels and features: everything with tags that is no street.
+
+use std::sync::Arc;
+
+use exurb_city::{Area, Building, Draft, Feature, FeatureShape, Origin, Parcel, Provenance};
+use exurb_geom::{GridPoint, Polygon};
+use rayon::prelude::*;
+
+use crate::elements::{Elements, Way};
+use crate::outline::{self, Repairs};
+use crate::places::{self, Places};
+use crate::tags::Tags;
+use crate::{areas, buildings, features};
+
+/// What a way or relation is, by its tags.
+#[derive(Clone, Debug, PartialEq)]
+enum Kind {
+    Building,
+    Water(Arc<str>),
+    LandUse(Arc<str>),
+    Parcel,
+    Feature(&'static str),
+}
+
+fn kind(tags: &Tags) -> Option<Kind> {
+    if buildings::is_building(tags) {
+        return Some(Kind::Building);
+    }
+    let feature = || features::kind(tags).map(Kind::Feature);
+    areas::water(tags)
+        .map(|class| Kind::Water(class.into()))
+        .or_else(feature)
+        .or_else(|| areas::is_parcel(tags).then_some(Kind::Parcel))
+        .or_else(|| areas::land_use(tags).map(|class| Kind::LandUse(class.into())))
+}
+
+/// Do these tags make something other than a street?
+pub fn matters(tags: &Tags) -> bool {
+    !tags.is_empty() && (kind(tags).is_some() || areas::is_waterway(tags))
+}
+
+/// Something read, on its way to its layer.
+enum Found {
+    Building(Building),
+    Water(Area),
+    LandUse(Area),
+    Parcel(Parcel),
+    Feature(Feature),
+}
+
+/// What became of the outlines, by layer.
+#[derive(Default)]
+struct Counts {
+    buildings: Repairs,
+    others: Repairs,
+}
+
+/// Reads all layers but streets into the draft.
+pub fn read(elements: &Elements, places: &Places, draft: &mut Draft, warnings: &mut Vec<String>) {
+    let (relations, outer) = relations(elements);
+    let of_ways = elements
+        .ways
+        .par_iter()
+        .enumerate()
+        .filter(|(i, way)| !way.tags.is_empty() && outer.binary_search(i).is_err());
+    let of_ways = of_ways.filter_map(|(_, way)| {
+        let kind = kind(&way.tags)?;
+        Some(from_way(elements, places, way, &kind))
+    });
+    let of_relations = relations.par_iter().map(|(kind, tags, ways)| {
+        let mut repairs = Repairs::default();
+        let polygons = outline::of_ways(elements, places, ways, &mut repairs);
+        (*kind == Kind::Building, found(kind, tags, polygons), repairs)
+    });
+    let all: Vec<_> =
+        of_ways.collect::<Vec<_>>().into_iter().chain(of_relations.collect::<Vec<_>>()).collect();
+    let mut counts = Counts::default();
+    for (is_building, found, repairs) in all {
+        (if is_building { &mut counts.buildings } else { &mut counts.others }).add(repairs);
+        found.into_iter().for_each(|found| put(found, draft));
+    }
+    for (id, tags) in &elements.tagged {
+        let at = places::search(&elements.nodes, *id, 0)
+            .and_then(|i| places::project(&draft.frame, &elements.nodes[i]));
+        if let (Some(at), Some(kind)) = (at, features::kind(tags)) {
+            draft.features.push(feature(kind, FeatureShape::Point(at)));
+        }
+    }
+    warnings.extend(counts.buildings.warning("buildings"));
+    warnings.extend(counts.others.warning("areas"));
+}
+
+fn put(found: Found, draft: &mut Draft) {
+    match found {
+        Found::Building(building) => draft.buildings.push(building),
+        Found::Water(area) => draft.water.push(area),
+        Found::LandUse(area) => draft.land_use.push(area),
+        Found::Parcel(parcel) => draft.parcels.push(parcel),
+        Found::Feature(feature) => draft.features.push(feature),
+    }
+}
+
+/// The relations that are something, with kind, tags and member ways; and, sorted, the indices of
+/// ways that are spent on them. Where a relation's own tags are silent, those of its only tagged
+/// member that is something speak (the old style).
+#[allow(clippy::type_complexity, reason = "two lists that are taken apart at once")]
+fn relations(elements: &Elements) -> (Vec<(Kind, &Tags, Vec<&Way>)>, Vec<usize>) {
+    let mut out = Vec::new();
+    let mut spent = Vec::new();
+    for relation in &elements.relations {
+        let members: Vec<usize> =
+            relation.ways.iter().filter_map(|id| elements.way_index(*id)).collect();
+        let ways: Vec<&Way> = members.iter().map(|i| &elements.ways[*i]).collect();
+        if let Some(kind) = kind(&relation.tags) {
+            // Outer ways often repeat the relation's tags; they are the same thing.
+            spent.extend(members.iter().zip(&ways).filter_map(|(i, way)| {
+                (relation.outer.contains(&way.id) && self::kind(&way.tags) == Some(kind.clone()))
+                    .then_some(*i)
+            }));
+            out.push((kind, &relation.tags, ways));
+        } else if relation.tags.get("type") == Some("multipolygon") {
+            let mut tagged =
+                members.iter().zip(&ways).filter_map(|(i, w)| Some((*i, kind(&w.tags)?, &w.tags)));
+            if let (Some((i, kind, tags)), None) = (tagged.next(), tagged.next()) {
+                spent.push(i);
+                out.push((kind, tags, ways));
+            }
+        }
+    }
+    spent.sort_unstable();
+    (out, spent)
+}
+
+fn from_way(
+    elements: &Elements,
+    places: &Places,
+    way: &Way,
+    kind: &Kind,
+) -> (bool, Vec<Found>, Repairs) {
+    let mut repairs = Repairs::default();
+    let is_building = *kind == Kind::Building;
+    if let Kind::Feature(word) = kind
+        && (features::is_line(word) || !outline::is_closed(elements, way))
+    {
+        let mut line: Vec<GridPoint> =
+            places.vertices(elements, way).flatten().map(|(_, p)| p).collect();
+        line.dedup();
+        let found = (line.len() > 1 && features::is_line(word))
+            .then(|| Found::Feature(feature(word, FeatureShape::Line(line))));
+        return (false, found.into_iter().collect(), repairs);
+    }
+    if !outline::is_closed(elements, way) {
+        repairs.dropped += 1;
+        return (is_building, Vec::new(), repairs);
+    }
+    let polygons = outline::of_way(elements, places, way, !is_building, &mut repairs);
+    (is_building, found(kind, &way.tags, polygons), repairs)
+}
+
+fn found(kind: &Kind, tags: &Tags, polygons: Vec<Polygon>) -> Vec<Found> {
+    let area = |polygon, class: &Arc<str>| Area { id: 0, polygon, class: class.clone() };
+    polygons
+        .into_iter()
+        .map(|polygon| match kind {
+            Kind::Building => Found::Building(buildings::building(tags, polygon)),
+            Kind::Water(class) => Found::Water(area(polygon, class)),
+            Kind::LandUse(class) => Found::LandUse(area(polygon, class)),
+            Kind::Parcel => Found::Parcel(areas::parcel(tags, polygon)),
+            Kind::Feature(word) => Found::Feature(feature(word, FeatureShape::Polygon(polygon))),
+        })
+        .collect()
+}
+
+fn feature(kind: &'static str, shape: FeatureShape) -> Feature {
+    Feature {
+        id: 0,
+        kind: kind.into(),
+        shape,
+        block: 0,
+        provenance: Provenance::of(Origin::Imported),
+    }
+}
