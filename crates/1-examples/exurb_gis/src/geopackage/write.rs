@@ -1,0 +1,107 @@
+//! City → GeoPackage.
+
+use std::path::Path;
+
+use exurb_city::City;
+use exurb_geom::{Bounds, Polygon};
+use rusqlite::types::{ToSqlOutput, ValueRef};
+use rusqlite::{Connection, ToSql, params};
+
+use super::schema;
+use crate::Error;
+use crate::beside::Beside;
+use crate::layers::{self, Layer, TargetRow};
+use crate::metadata;
+use crate::numbered::numbered;
+use crate::value::Value;
+use crate::wkb::{self, Shape};
+
+/// Writes a city as one GeoPackage 1.4 (contract, section 4).
+///
+/// Layers `streets`, `intersections`, `blocks`, `parcels`, `buildings`, `features`, `water`,
+/// `land_use` and `target`, each with an R-tree, in the city's own transverse Mercator; the table
+/// `exurb_metadata` holds what travels with the city. Equal cities give equal files, byte for byte.
+/// An existing file is replaced when the new one is whole. O(n log n), for the R-trees.
+pub fn write_geopackage(city: &City, path: &Path) -> Result<(), Error> {
+    let (beside, _) = Beside::create(path)?;
+    write_database(city, beside.path())
+        .map_err(|source| Error::WriteDatabase { file: path.display().to_string(), source })?;
+    beside.finish()
+}
+
+fn write_database(city: &City, path: &Path) -> rusqlite::Result<()> {
+    let city = numbered(city);
+    let mut db = Connection::open(path)?;
+    schema::prepare(&db)?;
+    let transaction = db.transaction()?;
+    schema::create_tables(&transaction, &city.frame)?;
+    schema::write_metadata(&transaction, &metadata::entries(&city))?;
+    write_layers(&transaction, &city)?;
+    transaction.commit()?;
+    db.close().map_err(|(_, error)| error)
+}
+
+fn write_layers(db: &Connection, city: &City) -> rusqlite::Result<()> {
+    write_layer(db, &layers::STREETS, layers::street_rows(city))?;
+    write_layer(db, &layers::INTERSECTIONS, layers::intersection_rows(city))?;
+    write_layer(db, &layers::BLOCKS, polygons(&city.blocks, |b| &b.polygon))?;
+    write_layer(db, &layers::PARCELS, polygons(&city.parcels, |p| &p.polygon))?;
+    write_layer(db, &layers::BUILDINGS, polygons(&city.buildings, |b| &b.polygon))?;
+    let features = city.features.iter().map(|f| (f, Shape::of(&f.shape)));
+    write_layer(db, &layers::FEATURES, features)?;
+    write_layer(db, &layers::WATER, polygons(&city.water, |a| &a.polygon))?;
+    write_layer(db, &layers::LAND_USE, polygons(&city.land_use, |a| &a.polygon))?;
+    let target = (TargetRow { id: 1 }, Shape::Polygon(&city.target));
+    write_layer(db, &layers::TARGET, [target])
+}
+
+fn polygons<T>(rows: &[T], polygon: fn(&T) -> &Polygon) -> impl Iterator<Item = (&T, Shape<'_>)> {
+    rows.iter().map(move |row| (row, Shape::Polygon(polygon(row))))
+}
+
+fn write_layer<'a, T: 'static, R: std::borrow::Borrow<T>>(
+    db: &Connection,
+    layer: &Layer<T>,
+    rows: impl IntoIterator<Item = (R, Shape<'a>)>,
+) -> rusqlite::Result<()> {
+    schema::create_layer(db, layer)?;
+    let name = layer.name;
+    let holes: String = layer.columns().map(|_| ", ?").collect();
+    let mut insert = db.prepare(&format!("INSERT INTO {name} VALUES (?, ?{holes})"))?;
+    let mut index = db.prepare(&format!("INSERT INTO rtree_{name}_geom VALUES (?, ?, ?, ?, ?)"))?;
+    let mut blob = Vec::new();
+    let mut extent: Option<Bounds> = None;
+    for ((row, shape), fid) in rows.into_iter().zip(1_i64..) {
+        wkb::encode(shape, schema::LOCAL_SRS, &mut blob);
+        insert.raw_bind_parameter(1, fid)?;
+        insert.raw_bind_parameter(2, &blob)?;
+        for (column, place) in layer.columns().zip(3..) {
+            insert.raw_bind_parameter(place, (column.get)(row.borrow()))?;
+        }
+        insert.raw_execute()?;
+        let bounds = shape.bounds();
+        let Bounds { min, max } = bounds;
+        index.execute(params![fid, min.x, max.x, min.y, max.y])?;
+        extent = Some(extent.map_or(bounds, |e| e.union(bounds)));
+    }
+    if let Some(Bounds { min, max }) = extent {
+        db.execute(
+            "UPDATE gpkg_contents SET min_x = ?, min_y = ?, max_x = ?, max_y = ? \
+             WHERE table_name = ?",
+            params![min.x, min.y, max.x, max.y, name],
+        )?;
+    }
+    schema::create_triggers(db, name)
+}
+
+impl ToSql for Value<'_> {
+    fn to_sql(&self) -> rusqlite::Result<ToSqlOutput<'_>> {
+        Ok(ToSqlOutput::Borrowed(match self {
+            Self::Null => ValueRef::Null,
+            Self::Bool(yes) => ValueRef::Integer(i64::from(*yes)),
+            Self::Int(n) => ValueRef::Integer(*n),
+            Self::Real(n) => ValueRef::Real(*n),
+            Self::Text(text) => ValueRef::Text(text.as_bytes()),
+        }))
+    }
+}

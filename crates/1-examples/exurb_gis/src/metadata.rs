@@ -1,0 +1,38 @@
+//! What travels with a city, as keys and values.
+
+use std::collections::BTreeMap;
+
+use exurb_city::City;
+use exurb_geom::LonLat;
+
+/// Version of the program, in every file.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+/// Key of the frame: longitude and latitude of the city's origin.
+pub const FRAME: &str = "exurb_frame";
+
+/// The entries of a city, in order; GeoJSON holds the same keys as foreign members.
+///
+/// `exurb_attribution` has one line for each attribution; `exurb_gates` is a JSON object of
+/// numbers; `exurb_frame` is `longitude latitude` of the origin; `exurb_buildings_complete` is
+/// `yes` or `no`.
+pub fn entries(city: &City) -> [(&'static str, String); 7] {
+    let metadata = &city.metadata;
+    let gates: BTreeMap<&str, f64> = metadata
+        .example_gates
+        .iter()
+        .filter(|(_, value)| value.is_finite())
+        .map(|(name, value)| (name.as_str(), *value))
+        .collect();
+    let gates = serde_json::to_string(&gates).expect("finite numbers by name are JSON");
+    let LonLat { lon, lat } = city.frame.origin();
+    let complete = if metadata.buildings_complete { "yes" } else { "no" };
+    [
+        ("exurb_version", VERSION.to_owned()),
+        (FRAME, format!("{lon:.7} {lat:.7}")),
+        ("exurb_name", metadata.name.to_string()),
+        ("exurb_attribution", metadata.attribution.join("\n")),
+        ("exurb_recipe", metadata.recipe.clone()),
+        ("exurb_gates", gates),
+        ("exurb_buildings_complete", complete.to_owned()),
+    ]
+}
