@@ -1,1 +1,12 @@
 //! Street networks by example.
+//!
+//! | room | method | source |
+//! |---|---|---|
+//! | [`grow`] | growth that copies patches of the example and falls back to its statistics | Nishida, Garcia-Dorado, Aliaga 2015 |
+//!
+//! [`operations()`] is the only list of rooms.
+
+pub mod grow;
+mod operations;
+
+pub use operations::operations;

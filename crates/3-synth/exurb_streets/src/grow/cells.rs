@@ -1,0 +1,271 @@
+//! Cells: what the main streets enclose. Local streets grow in each cell alone.
+//!
+//! A cell knows its border and nothing next door, so cells run on all cores and come out the same.
+//! Streets of two cells meet at nodes of the main street between them only, and those nodes are made
+//! before any cell begins: where the example has a side street, and every few metres besides.
+
+use std::collections::BTreeMap;
+
+use exurb_city::Origin;
+use exurb_geom::{GridPoint, Polygon, Vec2, polyline};
+use exurb_graph::{Dart, EdgeId, Face, Faces, Graph, NodeId, noding};
+use exurb_operation::{Rng, Run, rng};
+use rayon::prelude::*;
+
+use super::error::Error;
+use super::growth::{Growth, Place};
+use super::layer::NodeKind;
+use super::learn::Vocabulary;
+use super::network::{Network, Piece, Vertex};
+use super::params::Params;
+
+/// Distance between the nodes of a main street where local streets may end.
+const BERTH_M: f64 = 18.0;
+/// Cells smaller than this stay empty.
+const LEAST_AREA_M2: f64 = 2_000.0;
+
+/// A local street grown in a cell.
+pub struct Grown {
+    /// Its line.
+    pub line: Vec<GridPoint>,
+    /// What it is.
+    pub piece: Piece,
+    /// Its ends.
+    pub ends: [Vertex; 2],
+}
+
+/// Splits main streets where local ones may end later.
+pub fn make_berths(net: &mut Network) {
+    let edges: Vec<EdgeId> = net.graph.edges().map(|(id, _)| id).collect();
+    for id in edges {
+        let line = net.graph.edge(id).line_m();
+        let total = polyline::length(&line);
+        let count = (total / BERTH_M).floor() as usize;
+        let mut rest = id;
+        for i in 1..count {
+            let at = polyline::point_at(&line, total * i as f64 / count as f64);
+            let start = net.graph.node(net.graph.edge(rest).from).data.start;
+            if let Some(node) = net.split(rest, GridPoint::round(at)) {
+                net.graph.node_mut(node).data.start = start;
+                rest = EdgeId(net.graph.edge_bound() as u32 - 1);
+            }
+        }
+    }
+}
+
+/// Grows local streets in every cell of `area` between the main streets of `main`.
+pub fn grow(
+    main: &Network,
+    area: &Polygon,
+    examples: &[&Vocabulary],
+    starts: &[(GridPoint, Vec2)],
+    params: &Params,
+    run: &Run,
+) -> Result<Vec<Grown>, Error> {
+    let (graph, kinds) = border_graph(main, area);
+    let faces = Faces::of(&graph, |_| true);
+    let at: BTreeMap<GridPoint, NodeId> = main.graph.nodes().map(|(id, n)| (n.at, id)).collect();
+    let cells: Vec<&Face> = faces
+        .list
+        .iter()
+        .filter(|f| f.polygon.area_m2() >= LEAST_AREA_M2)
+        .filter(|f| area.contains(GridPoint::round(f.polygon.interior_point())))
+        .collect();
+    let grown: Vec<Result<Vec<Grown>, Error>> = cells
+        .par_iter()
+        .map(|face| {
+            let rng = cell_stream(face, run);
+            let (net, seeds) =
+                open_cell(main, &graph, &kinds, &at, face, examples, starts, rng.clone());
+            let mut growth = Growth::new(net, examples, false, &face.polygon, params, rng);
+            growth.queue.extend(seeds);
+            begin(&mut growth);
+            growth.run(run)?;
+            Ok(harvest(&growth.net))
+        })
+        .collect();
+    let mut out = Vec::new();
+    for cell in grown {
+        out.extend(cell?);
+    }
+    Ok(out)
+}
+
+/// Starts that lie in a cell grow by continuation whatever the draw says.
+fn begin(growth: &mut Growth) {
+    let nodes: Vec<NodeId> = growth
+        .queue
+        .iter()
+        .filter_map(|p| if let Place::Node(n) = p { Some(*n) } else { None })
+        .filter(|n| growth.net.graph.degree(*n) == 0)
+        .collect();
+    for node in nodes {
+        let vertex = growth.net.graph.node(node).data.clone();
+        let own = vertex.link.and_then(|l| growth.style(vertex.start).layer.of_example[l.index()]);
+        if let Some(own) = own {
+            super::placing::continuation(growth, node, own);
+        }
+    }
+}
+
+fn cell_stream(face: &Face, run: &Run) -> Rng {
+    let place = face.polygon.exterior().iter().min().copied().unwrap_or_default();
+    run.stream(rng::place_key(place))
+}
+
+/// The main streets inside `area` and the area's own edge as one planar graph; for every edge the
+/// main street it is, or `None` on the edge of the area.
+fn border_graph(
+    main: &Network,
+    area: &Polygon,
+) -> (Graph<(), Option<EdgeId>>, Vec<Option<EdgeId>>) {
+    let mut lines: Vec<noding::Line<Option<EdgeId>>> = main
+        .graph
+        .edges()
+        .map(|(id, e)| noding::Line { points: e.line().to_vec(), level: 0, data: Some(id) })
+        .collect();
+    for ring in area.rings() {
+        let mut points = ring.to_vec();
+        points.push(ring[0]);
+        lines.push(noding::Line { points, level: 0, data: None });
+    }
+    let mut graph = Graph::new();
+    let mut at = BTreeMap::new();
+    for line in noding::node(lines, noding::Options::default()) {
+        let mut node = |p: GridPoint, g: &mut Graph<(), Option<EdgeId>>| {
+            *at.entry(p).or_insert_with(|| g.add_node(p, ()))
+        };
+        let (first, last) = (line.points[0], line.points[line.points.len() - 1]);
+        let (a, b) = (node(first, &mut graph), node(last, &mut graph));
+        graph.add_edge(a, b, line.points, line.data);
+    }
+    let kinds = (0..graph.edge_bound()).map(|i| graph.edge(EdgeId(i as u32)).data).collect();
+    (graph, kinds)
+}
+
+/// The cell's border as a network, and the places where its local streets begin.
+#[expect(clippy::too_many_arguments, reason = "all of it is context of one loop")]
+fn open_cell(
+    main: &Network,
+    graph: &Graph<(), Option<EdgeId>>,
+    kinds: &[Option<EdgeId>],
+    at: &BTreeMap<GridPoint, NodeId>,
+    face: &Face,
+    examples: &[&Vocabulary],
+    starts: &[(GridPoint, Vec2)],
+    mut rng: Rng,
+) -> (Network, Vec<Place>) {
+    let street_m = examples.first().map_or(100.0, |e| e.local.statistics.length_mean_m);
+    let mut net = Network::new(street_m);
+    let mut local: BTreeMap<NodeId, NodeId> = BTreeMap::new();
+    let mut border: Vec<NodeId> = Vec::new();
+    let outline = face.outline.iter().chain(face.islands.iter().flatten());
+    let darts: Vec<Dart> = outline.copied().chain(face.inner.iter().map(|e| e.forward())).collect();
+    for dart in &darts {
+        let mut node = |n: NodeId, net: &mut Network, border: &mut Vec<NodeId>| {
+            *local.entry(n).or_insert_with(|| {
+                let place = graph.node(n).at;
+                let vertex = match at.get(&place) {
+                    Some(original) => main.graph.node(*original).data.clone(),
+                    None => Vertex { outside: true, ..Vertex::default() },
+                };
+                let id = net.add_node(place, vertex);
+                border.push(id);
+                id
+            })
+        };
+        let edge = graph.edge(dart.edge());
+        let (from, to) = (edge.from, edge.to);
+        let ends = [node(from, &mut net, &mut border), node(to, &mut net, &mut border)];
+        let piece = match kinds[dart.edge().index()] {
+            Some(id) => Piece { fixed: true, ..main.graph.edge(id).data.clone() },
+            None => Piece { street: Default::default(), batch: 0, fixed: true, rim: true },
+        };
+        net.add_edge(ends[0], ends[1], edge.line().to_vec(), Piece { batch: 0, ..piece });
+    }
+
+    let mut places = Vec::new();
+    for &node in &border {
+        branches(&net, node, face, examples, &mut places);
+    }
+    spaced(&net, face, graph, &local, examples, &mut rng, &mut places);
+    for (i, (start, source)) in starts.iter().enumerate() {
+        let style = &examples[i].local;
+        if face.polygon.contains(*start)
+            && main.graph.edge_count() == 0
+            && let Some(own) = style.nearest_start(*source)
+        {
+            let link = Some(style.layer.nodes[own].example);
+            let node = net.add_node(*start, Vertex { link, start: i, ..Vertex::default() });
+            places.push(Place::Node(node));
+        }
+    }
+    (net, places)
+}
+
+/// The example's own side streets at `node` that lead into the cell (Nishida et al. 2015, 4.4).
+fn branches(
+    net: &Network,
+    node: NodeId,
+    face: &Face,
+    examples: &[&Vocabulary],
+    places: &mut Vec<Place>,
+) {
+    let n = net.graph.node(node);
+    let Some(link) = n.data.link else { return };
+    let layer = &examples[n.data.start % examples.len()].local.layer;
+    let Some(own) = layer.of_example[link.index()] else { return };
+    if layer.nodes[own].kind != NodeKind::OnMain {
+        return;
+    }
+    for &end in &layer.nodes[own].ends {
+        let ahead = n.at.to_m() + layer.direction(end) * 5.0;
+        if face.polygon.contains(GridPoint::round(ahead)) {
+            places.push(Place::Branch(node, end));
+        }
+    }
+}
+
+/// Side streets along what grew without a patch, spaced by the statistics (4.4).
+fn spaced(
+    net: &Network,
+    face: &Face,
+    graph: &Graph<(), Option<EdgeId>>,
+    local: &BTreeMap<NodeId, NodeId>,
+    examples: &[&Vocabulary],
+    rng: &mut Rng,
+    places: &mut Vec<Place>,
+) {
+    use rand::RngExt;
+    let mean_m = examples.first().map_or(100.0, |e| e.local.statistics.length_mean_m).max(30.0);
+    let mut wait_m = mean_m * 0.5;
+    for dart in &face.outline {
+        let tail = local[&graph.tail(*dart)];
+        let head = local[&graph.head(*dart)];
+        let edge = net.graph.darts(tail).iter().find(|d| net.graph.head(**d) == head);
+        let Some(piece) = edge.map(|d| &net.graph.edge(d.edge()).data) else { continue };
+        if piece.rim || piece.street.provenance.origin == Origin::Example {
+            continue;
+        }
+        wait_m -= graph.edge(dart.edge()).length_m();
+        if wait_m <= 0.0 {
+            let line = graph.dart_line_m(*dart);
+            let direction = (line[line.len() - 1] - line[line.len() - 2]).normalize_or(Vec2::X);
+            places.push(Place::Away(head, direction.perp()));
+            wait_m = mean_m * rng.random_range(0.6..1.4);
+        }
+    }
+}
+
+/// What grew in a cell.
+fn harvest(net: &Network) -> Vec<Grown> {
+    net.graph
+        .edges()
+        .filter(|(_, e)| !e.data.fixed)
+        .map(|(_, e)| Grown {
+            line: e.line().to_vec(),
+            piece: e.data.clone(),
+            ends: [e.from, e.to].map(|n| net.graph.node(n).data.clone()),
+        })
+        .collect()
+}

@@ -1,0 +1,34 @@
+//! Why streets could not be grown.
+
+/// Errors of growth; folded into [`exurb_operation::Failure`] at the room's border.
+#[derive(Debug, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// The example has no streets to learn from.
+    #[error(
+        "`{0}` has no streets to learn from (classes motorway and trunk are never grown); \
+         choose a map with streets, or a larger part of it"
+    )]
+    NoStreets(String),
+    /// No junction, so no patch.
+    #[error("`{0}` has no junction of three streets, so no patch; choose a larger part of the map")]
+    NoPatch(String),
+    /// A parameter cannot be used with this example or target.
+    #[error("{0}")]
+    Params(String),
+    /// A start lies outside the target.
+    #[error("the start {0} lies outside the target; choose a place inside it")]
+    StartOutside(String),
+    /// Nothing grew.
+    #[error(
+        "no street grew from {starts} start(s) in a target of {area_km2:.3} km²; enlarge the target or move the start"
+    )]
+    Nothing {
+        /// Starts tried.
+        starts: usize,
+        /// Size of the target.
+        area_km2: f64,
+    },
+    /// The user asked to stop.
+    #[error("cancelled")]
+    Cancelled,
+}

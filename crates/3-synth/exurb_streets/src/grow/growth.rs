@@ -1,0 +1,218 @@
+//! Growth of one layer inside one area: the queue and its turns.
+//!
+//! Source: Nishida et al. 2015, algorithm 1 and sections 4.3.1-4.3.4. A vertex from the queue 1
+//! follows its example's own next patch (with the probability `continuation`), else 2 is connected
+//! to what lies straight ahead, else 3 takes a patch drawn by eq. (2), else 4 grows from statistics.
+//! The printed algorithm lacks 1 and 2; the authors' program has both, and connects first. We let a
+//! fitting continuation go first, because connecting pre-empts it.
+
+use std::collections::VecDeque;
+
+use exurb_city::{Origin, Provenance, Street};
+use exurb_geom::{GridPoint, Polygon, Vec2, polyline, trig};
+use exurb_graph::NodeId;
+use exurb_operation::{Rng, Run};
+use rand::RngExt;
+
+use super::error::Error;
+use super::layer::{ChainEnd, NodeKind};
+use super::learn::{Style, Vocabulary};
+use super::network::{Network, Piece, Vertex, Wish};
+use super::params::Params;
+use super::{drawing, placing, procedural};
+
+/// Growth of one layer.
+pub struct Growth<'a> {
+    /// The network grown into.
+    pub net: Network,
+    /// Examples, by number of the start that uses them.
+    pub examples: &'a [&'a Vocabulary],
+    /// Main streets (or local ones)?
+    pub is_main: bool,
+    /// The area to fill: places outside are not grown on.
+    pub area: &'a Polygon,
+    /// What the user set.
+    pub params: &'a Params,
+    /// The stream of this area.
+    pub rng: Rng,
+    /// Places to grow on.
+    pub queue: VecDeque<Place>,
+    batch: u32,
+}
+
+/// A place to grow on.
+#[derive(Clone, Copy, Debug)]
+pub enum Place {
+    /// A node.
+    Node(NodeId),
+    /// A node of a main street where the example's local street `end` leaves.
+    Branch(NodeId, ChainEnd),
+    /// A node of a main street where a local street should leave in this direction.
+    Away(NodeId, Vec2),
+}
+
+impl<'a> Growth<'a> {
+    /// Growth into `net`, with nothing queued.
+    pub fn new(
+        net: Network,
+        examples: &'a [&'a Vocabulary],
+        is_main: bool,
+        area: &'a Polygon,
+        params: &'a Params,
+        rng: Rng,
+    ) -> Self {
+        Self { net, examples, is_main, area, params, rng, queue: VecDeque::new(), batch: 1 }
+    }
+
+    /// The layer's style for what grew from `start`.
+    pub fn style(&self, start: usize) -> &'a Style {
+        let example = self.example(start);
+        if self.is_main { &example.main } else { &example.local }
+    }
+
+    /// The example of `start`.
+    pub fn example(&self, start: usize) -> &'a Vocabulary {
+        self.examples[start % self.examples.len()]
+    }
+
+    /// A number for pieces laid in one go.
+    pub fn next_batch(&mut self) -> u32 {
+        self.batch += 1;
+        self.batch
+    }
+
+    /// Grows until the queue is empty.
+    pub fn run(&mut self, run: &Run) -> Result<(), Error> {
+        let mut turns = 0_u32;
+        while let Some(place) = self.queue.pop_front() {
+            turns += 1;
+            if turns.is_multiple_of(64) && run.is_cancelled() {
+                return Err(Error::Cancelled);
+            }
+            match place {
+                Place::Node(node) => self.turn(node),
+                Place::Branch(node, end) => placing::branch(self, node, end),
+                Place::Away(node, direction) => drawing::away(self, node, direction),
+            }
+        }
+        Ok(())
+    }
+
+    /// One turn of algorithm 1.
+    fn turn(&mut self, node: NodeId) {
+        let Some(n) = self.net.graph.get_node(node) else { return };
+        let (at, vertex) = (n.at, n.data.clone());
+        if vertex.outside || vertex.dead_end || !self.area.contains(at) {
+            return;
+        }
+        let degree = self.net.graph.degree(node);
+        let procedural = self.rng.random_bool(self.params.procedural);
+        if !procedural && vertex.link.is_some() && self.rng.random_bool(self.params.continuation) {
+            let link = vertex.link.and_then(|l| self.linked_node(l, vertex.start));
+            if link.is_some_and(|own| placing::continuation(self, node, own)) {
+                return;
+            }
+        }
+        if degree > 2 || degree == 0 && vertex.link.is_none() {
+            return;
+        }
+        if degree > 0 && procedural::connect(self, node) {
+            return;
+        }
+        if !procedural && drawing::draw(self, node) {
+            return;
+        }
+        procedural::expand(self, node);
+    }
+
+    /// The layer's node that is a copy's original.
+    fn linked_node(&self, link: NodeId, start: usize) -> Option<usize> {
+        self.style(start).layer.of_example[link.index()]
+    }
+
+    /// Queues a node that has just been made, unless it is to stay as it is.
+    pub fn enqueue(&mut self, node: NodeId) {
+        let vertex = &self.net.graph.node(node).data;
+        if !vertex.outside && !vertex.dead_end {
+            self.queue.push_back(Place::Node(node));
+        }
+    }
+
+    /// The vertex of a copy of the layer's node `own`.
+    pub fn copy_of(&self, own: usize, start: usize) -> Vertex {
+        let node = &self.style(start).layer.nodes[own];
+        Vertex {
+            // Beyond the example's edge there is nothing to follow.
+            link: (node.kind != NodeKind::Cut).then_some(node.example),
+            dead_end: node.kind == NodeKind::DeadEnd,
+            outside: false,
+            start,
+        }
+    }
+
+    /// A piece copied from the example.
+    pub fn copied(
+        &self,
+        street: &Street,
+        start: usize,
+        part: &std::sync::Arc<str>,
+        batch: u32,
+    ) -> Piece {
+        let mut street = street.clone();
+        street.provenance = Provenance {
+            origin: Origin::Example,
+            source: Some(self.example(start).name.clone()),
+            part: Some(part.clone()),
+        };
+        street.name = None;
+        Piece { street, batch, fixed: false, rim: false }
+    }
+
+    /// A piece made without a patch.
+    pub fn made(&self, street: &Street, origin: Origin) -> Piece {
+        let street = Street { provenance: Provenance::of(origin), name: None, ..street.clone() };
+        Piece { street, batch: 0, fixed: false, rim: false }
+    }
+
+    /// Lays a line from `node` if it may be, ending wherever it must. Nodes of the other layer at
+    /// `via` (points of the line, nodes of the example) become nodes of the network too, as far as
+    /// the line got. Returns the last node and how much of the line was laid.
+    pub fn lay(
+        &mut self,
+        node: NodeId,
+        line: &[Vec2],
+        wish: Wish,
+        piece: Piece,
+        vertex: Vertex,
+        via: &[(usize, NodeId)],
+    ) -> Option<(NodeId, f64)> {
+        let probe = self.net.probe(node, line, wish)?;
+        let kept = probe.kept;
+        let landed = polyline::length(&probe.line);
+        let whole = probe.line.len() == line.len();
+        let stops: Vec<(Vec2, NodeId)> = via
+            .iter()
+            .filter(|(i, _)| whole || polyline::length(&line[..=*i]) < landed - 12.0)
+            .filter_map(|(i, n)| Some((*probe.line.get(*i)?, *n)))
+            .collect();
+        let start = vertex.start;
+        let (to, mut edge) = self.net.commit(node, probe, piece, vertex)?;
+        for (at, link) in stops {
+            let at = GridPoint::round(at);
+            if let Some(middle) = self.net.split(edge, at) {
+                let data = &mut self.net.graph.node_mut(middle).data;
+                (data.link, data.start) = (Some(link), start);
+                // The rest of the line is the newest edge.
+                edge = exurb_graph::EdgeId(self.net.graph.edge_bound() as u32 - 1);
+            }
+        }
+        Some((to, kept))
+    }
+
+    /// Is a free place there: nothing in the way on the first metres of this direction?
+    pub fn is_open(&self, node: NodeId, direction: Vec2, least_rad: f64) -> bool {
+        self.net.graph.darts(node).iter().all(|dart| {
+            trig::angle_between(self.net.graph.direction(*dart, 15.0), direction) >= least_rad
+        })
+    }
+}
