@@ -35,6 +35,8 @@ fn main() {
         outcome.seconds.synthesise,
         km / (outcome.seconds.learn + outcome.seconds.synthesise),
     );
-    let options = exurb_plan::Options { width_px: 1000, ..Default::default() };
+    let style =
+        exurb_plan::Style::parse(&std::env::var("STYLE").unwrap_or("figure".into())).unwrap();
+    let options = exurb_plan::Options { width_px: 1000, style, ..Default::default() };
     std::fs::write(&args[1], exurb_plan::to_png(&outcome.city, &options).unwrap()).unwrap();
 }

@@ -197,6 +197,9 @@ impl<'a> Growth<'a> {
             .collect();
         let start = vertex.start;
         let (to, mut edge) = self.net.commit(node, probe, piece, vertex)?;
+        if !self.area.contains(self.net.graph.node(to).at) {
+            self.net.graph.node_mut(to).data.outside = true;
+        }
         for (at, link) in stops {
             let at = GridPoint::round(at);
             if let Some(middle) = self.net.split(edge, at) {
