@@ -2,10 +2,12 @@
 
 use std::sync::Arc;
 
-use exurb_geom::{Bounds, Frame, GridPoint, LonLat, Polygon};
+use exurb_geom::{Bounds, Frame, GridPoint, LonLat, Polygon, overlay};
+use exurb_graph::NodeId;
 
 use crate::street_graph::{self, Derive};
-use crate::{Area, Building, City, Feature, Metadata, Parcel, Role, StreetMap};
+use crate::{Area, Building, City, Feature, Metadata, Origin, Parcel, Provenance, Role};
+use crate::{StreetGraph, StreetMap, completeness, cut, densest_square, placing};
 
 /// What a reader delivers, in the local frame.
 #[derive(Clone, Debug)]
@@ -87,39 +89,106 @@ impl Draft {
         }
     }
 
-    /// The city of this draft.
-    pub fn assemble(self, options: &ImportOptions) -> Result<Imported, DraftError> {
-        let target = match (&options.bbox, &self.extent) {
-            (Some([sw, ne]), _) => {
-                let corner = |p: &LonLat| self.frame.project_to_grid(*p).unwrap_or_default();
-                Polygon::rectangle(corner(sw), corner(ne))
-            }
-            (None, Some(extent)) => extent.clone(),
-            (None, None) => {
-                let streets = self.streets.ways.iter().flat_map(|w| w.line.iter().copied());
-                let bounds = Bounds::of(streets)
-                    .ok_or_else(|| DraftError::Empty("the file".to_owned()))?;
-                Polygon::rectangle(GridPoint::round(bounds.min), GridPoint::round(bounds.max))
-            }
-        };
+    /// The city of this draft, in steps: 1 the target; 2 what lies outside goes; 3 streets; 4
+    /// blocks; 5 what lies in which block; 6 what blocks are used for.
+    ///
+    /// Streets are cut at the target's edge, other ways lose the segments outside, buildings and
+    /// parcels stay where their centroid lies inside, areas and lines are clipped. Because ways
+    /// come whole, nothing inside depends on what is dropped.
+    pub fn assemble(mut self, options: &ImportOptions) -> Result<Imported, DraftError> {
+        let target = self.target(options)?;
+        cut::cut(&mut self, &target, options.with_other);
         let derive = Derive { with_other: options.with_other, area: Some(target.clone()) };
-        let streets = street_graph::derive(&self.streets, &derive);
+        let mut streets = street_graph::derive(&self.streets, &derive);
+        mark_broken_ends(&mut streets, self.broken_ends);
+
+        let mut blocks = crate::block::derive(&streets);
+        for block in &mut blocks {
+            block.provenance = Provenance::of(Origin::Imported);
+        }
+        placing::use_land(&mut blocks, &self.land_use);
+        placing::place(&blocks, &mut self.parcels, &mut self.buildings, &mut self.features);
+        placing::give_access(&mut self.parcels, &streets);
+        for areas in [&mut self.water, &mut self.land_use] {
+            for (area, id) in areas.iter_mut().zip(1..) {
+                area.id = id;
+            }
+        }
+        let mut warnings = Vec::new();
+        if streets.edge_count() == 0 {
+            warnings.push("the map has no streets".to_owned());
+        }
         let mut city = City::empty(self.frame, target);
+        city.metadata = self.metadata;
+        city.metadata.buildings_complete =
+            completeness::built_share(&streets, &self.buildings) >= completeness::COMPLETE_SHARE;
         city.streets = Arc::new(streets);
-        city.other_ways = Arc::new(
-            self.streets
-                .ways
-                .into_iter()
-                .filter(|w| !options.with_other && w.street.role() == Role::Other)
-                .collect(),
-        );
-        city.buildings = Arc::new(self.buildings);
+        let other = |w: &crate::Way| !options.with_other && w.street.role() == Role::Other;
+        city.other_ways = Arc::new(self.streets.ways.into_iter().filter(other).collect());
+        city.blocks = Arc::new(blocks);
         city.parcels = Arc::new(self.parcels);
+        city.buildings = Arc::new(self.buildings);
         city.features = Arc::new(self.features);
         city.water = Arc::new(self.water);
         city.land_use = Arc::new(self.land_use);
-        city.metadata = self.metadata;
-        city.blocks = Arc::new(crate::block::derive(&city.streets));
-        Ok(Imported { city, warnings: Vec::new() })
+        Ok(Imported { city, warnings })
+    }
+
+    /// The extent, the part of it inside the box asked for, and the half asked for of the densest
+    /// square of that.
+    fn target(&self, options: &ImportOptions) -> Result<Polygon, DraftError> {
+        let mut target = match &self.extent {
+            Some(extent) => extent.clone(),
+            None => self.bounds().and_then(rectangle).ok_or_else(|| empty("the file"))?,
+        };
+        if let Some([sw, ne]) = options.bbox {
+            let name = format!("the box {},{},{},{}", sw.lon, sw.lat, ne.lon, ne.lat);
+            let asked = self.frame.rectangle_inside(sw, ne).ok_or_else(|| empty(&name))?;
+            let mut common = overlay::intersection(&asked, &target).into_iter();
+            target = common.next().ok_or_else(|| empty(&name))?;
+        }
+        if let Some(part) = options.part {
+            let square = densest_square::densest_square(&self.streets.ways, target.bounds());
+            let half = rectangle(densest_square::half(square, part));
+            let mut common =
+                half.into_iter().flat_map(|half| overlay::intersection(&half, &target));
+            target = common.next().ok_or_else(|| empty("the half asked for"))?;
+        }
+        Ok(target)
+    }
+
+    /// The box of the streets, or of whatever there is.
+    fn bounds(&self) -> Option<Bounds> {
+        let streets = Bounds::of(self.streets.ways.iter().flat_map(|w| w.line.iter().copied()));
+        let polygons = self
+            .buildings
+            .iter()
+            .map(|b| &b.polygon)
+            .chain(self.parcels.iter().map(|p| &p.polygon))
+            .chain(self.water.iter().chain(&self.land_use).map(|a| &a.polygon));
+        streets.or_else(|| polygons.map(Polygon::bounds).reduce(Bounds::union))
+    }
+}
+
+fn empty(what: &str) -> DraftError {
+    DraftError::Empty(what.to_owned())
+}
+
+/// The box as a polygon; `None` without area on the grid.
+fn rectangle(Bounds { min, max }: Bounds) -> Option<Polygon> {
+    let (a, b) = (GridPoint::round(min), GridPoint::round(max));
+    (a.x < b.x && a.y < b.y).then(|| Polygon::rectangle(a, b))
+}
+
+/// Ends where the file breaks off are cut ends.
+fn mark_broken_ends(streets: &mut StreetGraph, mut broken: Vec<GridPoint>) {
+    broken.sort_unstable();
+    let ends: Vec<NodeId> = streets
+        .nodes()
+        .filter(|(id, node)| streets.degree(*id) == 1 && broken.binary_search(&node.at).is_ok())
+        .map(|(id, _)| id)
+        .collect();
+    for id in ends {
+        streets.node_mut(id).data.cut = true;
     }
 }

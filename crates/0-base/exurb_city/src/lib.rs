@@ -18,11 +18,16 @@
 pub mod area;
 pub mod block;
 pub mod building;
-mod draft;
 mod city;
+pub mod completeness;
+mod cut;
+mod densest_square;
+mod draft;
 mod edit;
 pub mod feature;
+mod lonlat_bbox;
 pub mod parcel;
+mod placing;
 pub mod provenance;
 pub mod role;
 pub mod street_graph;

@@ -2,7 +2,7 @@
 
 use proj4rs::Proj;
 
-use crate::{GridPoint, Vec2};
+use crate::{GridPoint, Polygon, Vec2};
 
 /// A place on the WGS 84 ellipsoid, in degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,6 +93,20 @@ impl Frame {
         }
     }
 
+    /// The largest axis-parallel rectangle of the plane inside the box of longitude and latitude
+    /// between two corners; the box's own sides are a little bent and turned in the plane. `None`
+    /// when the corners are no box, out of reach or too near each other.
+    pub fn rectangle_inside(&self, south_west: LonLat, north_east: LonLat) -> Option<Polygon> {
+        let (w, e, s, n) = (south_west.lon, north_east.lon, south_west.lat, north_east.lat);
+        let at = |lon: f64, lat: f64| self.project_to_grid(LonLat { lon, lat });
+        let middle = (w + e) / 2.0;
+        let (sw, se, nw, ne) = (at(w, s)?, at(e, s)?, at(w, n)?, at(e, n)?);
+        let (south, north) = (at(middle, s)?, at(middle, n)?);
+        let lo = GridPoint { x: sw.x.max(nw.x), y: sw.y.max(se.y).max(south.y) };
+        let hi = GridPoint { x: se.x.min(ne.x), y: nw.y.min(ne.y).min(north.y) };
+        (lo.x < hi.x && lo.y < hi.y).then(|| Polygon::rectangle(lo, hi))
+    }
+
     /// The frame as OGC well-known text (version 1), for GeoPackage and `.prj` files.
     pub fn to_wkt(&self) -> String {
         let LonLat { lon, lat } = self.origin;
@@ -135,6 +149,20 @@ mod tests {
         // a·π/180 on WGS 84, less the cubic term of the transverse projection along the equator.
         let x = Frame::null_island().project(LonLat { lon: 0.1, lat: 0.0 }).expect("valid").x;
         assert!((x - 11_131.95).abs() < 0.02, "{x}");
+    }
+
+    #[test]
+    fn a_rectangle_inside_a_box_stays_inside_it() {
+        let frame = Frame::new(LonLat { lon: 24.94, lat: 60.17 }).expect("valid");
+        let corners = [LonLat { lon: 24.9, lat: 60.1 }, LonLat { lon: 25.1, lat: 60.2 }];
+        let inside = frame.rectangle_inside(corners[0], corners[1]).expect("a box");
+        for p in inside.exterior() {
+            let LonLat { lon, lat } = frame.unproject(p.to_m());
+            assert!((24.9 - 1e-8..=25.1 + 1e-8).contains(&lon), "{lon}");
+            assert!((60.1 - 1e-8..=60.2 + 1e-8).contains(&lat), "{lat}");
+        }
+        assert!(inside.area_m2() > 0.98 * 11_090.0 * 11_140.0);
+        assert_eq!(frame.rectangle_inside(corners[1], corners[0]), None);
     }
 
     #[test]

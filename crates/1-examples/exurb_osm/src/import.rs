@@ -2,7 +2,7 @@
 //! their nodes lie; 3 streets, buildings, areas and features.
 
 use exurb_city::{Draft, ImportOptions, Imported};
-use exurb_geom::{Frame, GridPoint, LonLat, Polygon};
+use exurb_geom::{Frame, LonLat};
 
 use crate::elements::{Bounds, Elements};
 use crate::places::{self, Places};
@@ -26,7 +26,9 @@ pub fn city(elements: Elements, file: &str, options: &ImportOptions) -> Result<I
     let places = Places::find(&elements, &needed, &frame);
 
     let mut draft = Draft::new(frame);
-    draft.extent = extent.and_then(|bounds| rectangle(&draft.frame, bounds));
+    let corner = |lon, lat| LonLat { lon, lat };
+    draft.extent = extent
+        .and_then(|[w, s, e, n]| draft.frame.rectangle_inside(corner(w, s), corner(e, n)));
     let streets = streets::read(&elements, &places);
     draft.streets.ways = streets.ways;
     draft.broken_ends = streets.broken_ends;
@@ -115,16 +117,4 @@ fn node_bounds(elements: &Elements, ids: impl Iterator<Item = i64>) -> Option<Bo
         bounds = Some([w.min(n.lon), s.min(n.lat), e.max(n.lon), north.max(n.lat)]);
     }
     bounds.map(|b| b.map(places::degrees))
-}
-
-/// The largest axis-parallel rectangle of the frame inside a box of longitude and latitude, whose
-/// sides are a little bent and turned in the plane. `None` when nothing is left.
-fn rectangle(frame: &Frame, [w, s, e, n]: Bounds) -> Option<Polygon> {
-    let at = |lon: f64, lat: f64| frame.project_to_grid(LonLat { lon, lat });
-    let middle = (w + e) / 2.0;
-    let (sw, se, nw, ne) = (at(w, s)?, at(e, s)?, at(w, n)?, at(e, n)?);
-    let (south, north) = (at(middle, s)?, at(middle, n)?);
-    let lo = GridPoint { x: sw.x.max(nw.x), y: sw.y.max(se.y).max(south.y) };
-    let hi = GridPoint { x: se.x.min(ne.x), y: nw.y.min(ne.y).min(north.y) };
-    (lo.x < hi.x && lo.y < hi.y).then(|| Polygon::rectangle(lo, hi))
 }
