@@ -13,6 +13,7 @@
 //! | [`block`] | blocks: the faces of the graph less the carriageways |
 //! | [`parcel`], [`building`], [`feature`], [`area`] | what lies in the blocks |
 //! | [`provenance`] | origin and source of elements |
+//! | [`laws`] | what every city keeps, and its likeness gates |
 //! | [`Edit`] | what an operation changes |
 
 pub mod area;
@@ -25,6 +26,7 @@ mod densest_square;
 mod draft;
 mod edit;
 pub mod feature;
+pub mod laws;
 mod lonlat_bbox;
 pub mod parcel;
 mod placing;
@@ -40,6 +42,7 @@ pub use city::{City, Metadata};
 pub use draft::{Draft, DraftError, ImportOptions, Imported, Part};
 pub use edit::Edit;
 pub use feature::{Feature, FeatureShape};
+pub use laws::{LawReport, laws};
 pub use parcel::Parcel;
 pub use provenance::{Origin, Provenance};
 pub use role::{Class, Role};
