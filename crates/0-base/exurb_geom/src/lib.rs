@@ -17,8 +17,10 @@
 //! | [`offset`] | insets of polygons and carriageways of lines |
 //! | [`box_grid`] | boxes that meet a box, for a set that does not change |
 //! | [`segment_grid`] | segments near a segment, for linework that does not change |
+//! | [`straight_skeleton`] | what sides sweep while they move inwards: hipped roofs |
 //! | [`segment_index`] | segments near a box, while they come and go |
 //! | [`point_index`] | points near a point, while they come and go |
+//! | [`crs`] | coordinate systems of other files to longitude and latitude |
 //! | [`projection`] | longitude and latitude to local metres and back |
 //! | [`trig`] | trigonometry that is the same on every machine |
 //!
@@ -32,6 +34,7 @@ mod bounds;
 pub mod box_grid;
 mod cell_table;
 mod convert;
+pub mod crs;
 pub mod grid;
 pub mod offset;
 pub mod oriented_box;
@@ -43,10 +46,12 @@ pub mod projection;
 pub mod segment_grid;
 pub mod segment_index;
 pub mod split;
+pub mod straight_skeleton;
 pub mod trig;
 pub mod voronoi;
 
 pub use bounds::Bounds;
+pub use crs::Crs;
 pub use box_grid::BoxGrid;
 pub use glam::DVec2 as Vec2;
 pub use grid::GridPoint;
