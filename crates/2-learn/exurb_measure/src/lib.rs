@@ -2,8 +2,12 @@
 //!
 //! | part | what it holds |
 //! |---|---|
+//! | [`info`] | what is in a city, with its laws and likeness gates: `exurb info` |
 //! | [`statistics`] | mean and variance of length and curvature of streets |
 
+pub mod info;
+mod info_text;
 pub mod statistics;
 
+pub use info::Info;
 pub use statistics::{StreetStatistics, street_statistics};
