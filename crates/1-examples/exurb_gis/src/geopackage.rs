@@ -1,8 +1,10 @@
 //! GeoPackage both ways.
 
+mod read;
 mod schema;
 mod write;
 
+pub use read::read_geopackage;
 pub use write::write_geopackage;
 
 #[cfg(test)]

@@ -81,14 +81,15 @@ impl<T> Layer<T> {
         self.groups.iter().copied().flatten()
     }
 
-    /// Takes the values of a row over into `row`; the name and value of the first bad column.
+    /// Takes the values of a row over into `row`: `value` gives the column of that number and name.
+    /// Fails with the name and value of the first bad column.
     pub fn take<'v>(
         &self,
         row: &mut T,
-        mut value: impl FnMut(&'static str) -> Value<'v>,
+        mut value: impl FnMut(usize, &'static str) -> Value<'v>,
     ) -> Result<(), (&'static str, Value<'v>)> {
-        for column in self.columns() {
-            let value = value(column.name);
+        for (number, column) in self.columns().enumerate() {
+            let value = value(number, column.name);
             if (column.set)(row, &value).is_none() {
                 return Err((column.name, value));
             }
@@ -142,6 +143,19 @@ pub struct TargetRow {
     /// Always 1.
     pub id: u32,
 }
+
+/// The names of all layers, in the order of files.
+pub const NAMES: [&str; 9] = [
+    "streets",
+    "intersections",
+    "blocks",
+    "parcels",
+    "buildings",
+    "features",
+    "water",
+    "land_use",
+    "target",
+];
 
 /// Streets.
 pub static STREETS: Layer<StreetRow> = Layer {

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use exurb_city::City;
-use exurb_geom::LonLat;
+use exurb_city::{City, Metadata};
+use exurb_geom::{Frame, LonLat};
 
 /// Version of the program, in every file.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -35,4 +35,23 @@ pub fn entries(city: &City) -> [(&'static str, String); 7] {
         ("exurb_gates", gates),
         ("exurb_buildings_complete", complete.to_owned()),
     ]
+}
+
+/// The frame and the metadata of entries by key; `None` when there is no frame, and so no city.
+pub fn read(mut value: impl FnMut(&str) -> Option<String>) -> Option<(Frame, Metadata)> {
+    let origin = value(FRAME)?;
+    let mut numbers = origin.split_whitespace().map(|n| n.parse().ok());
+    let (lon, lat) = (numbers.next()??, numbers.next()??);
+    let frame = Frame::new(LonLat { lon, lat }).ok()?;
+    let mut text = |key| value(key).unwrap_or_default();
+    let gates: BTreeMap<String, f64> =
+        serde_json::from_str(&text("exurb_gates")).unwrap_or_default();
+    let metadata = Metadata {
+        name: text("exurb_name").into(),
+        attribution: text("exurb_attribution").lines().map(str::to_owned).collect(),
+        recipe: text("exurb_recipe"),
+        example_gates: gates,
+        buildings_complete: text("exurb_buildings_complete") == "yes",
+    };
+    Some((frame, metadata))
 }

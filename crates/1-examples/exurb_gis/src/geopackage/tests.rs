@@ -1,14 +1,190 @@
-use super::write_geopackage;
-use crate::sample;
+use std::path::{Path, PathBuf};
+
+use exurb_city::{City, ImportOptions, Role};
+use proptest::prelude::*;
+use rusqlite::Connection;
+
+use super::{read_geopackage, write_geopackage};
+use crate::Error;
+use crate::sample::{self, any_city, assert_same};
+
+fn written(city: &City, folder: &Path, name: &str) -> (PathBuf, Vec<u8>) {
+    let path = folder.join(name);
+    write_geopackage(city, &path).unwrap();
+    let bytes = std::fs::read(&path).unwrap();
+    (path, bytes)
+}
+
+fn read(path: &Path) -> City {
+    let imported = read_geopackage(path, &ImportOptions::default()).unwrap();
+    assert_eq!(imported.warnings, [""; 0]);
+    imported.city
+}
 
 #[test]
 fn equal_cities_are_equal_files() {
     let folder = tempfile::tempdir().unwrap();
     let city = sample::grid_city(6);
-    let bytes = ["a.gpkg", "b.gpkg"].map(|name| {
-        write_geopackage(&city, &folder.path().join(name)).unwrap();
-        std::fs::read(folder.path().join(name)).unwrap()
-    });
+    let bytes = ["a.gpkg", "b.gpkg"].map(|name| written(&city, folder.path(), name).1);
     assert_eq!(bytes[0], bytes[1]);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2, "nothing is left beside");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn what_is_written_is_read_back(city in any_city()) {
+        let folder = tempfile::tempdir().unwrap();
+        let (path, bytes) = written(&city, folder.path(), "a.gpkg");
+        let back = read(&path);
+        assert_same(&back, &city);
+        prop_assert_eq!(written(&back, folder.path(), "b.gpkg").1, bytes);
+    }
+}
+
+#[test]
+fn the_files_answer_to_the_standard() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, _) = written(&sample::grid_city(3), folder.path(), "a.gpkg");
+    let db = Connection::open(path).unwrap();
+    let number = |sql: &str| db.query_row(sql, [], |row| row.get::<_, i64>(0)).unwrap();
+    assert_eq!(number("PRAGMA application_id"), 0x4750_4B47);
+    assert_eq!(number("PRAGMA user_version"), 10_400);
+    assert_eq!(number("SELECT count(*) FROM pragma_foreign_key_check"), 0);
+    assert_eq!(
+        number("SELECT count(*) FROM pragma_integrity_check WHERE integrity_check = 'ok'"),
+        1
+    );
+    assert_eq!(number("SELECT count(*) FROM gpkg_contents WHERE data_type = 'features'"), 9);
+    assert_eq!(
+        number("SELECT count(*) FROM rtree_streets_geom"),
+        number("SELECT count(*) FROM streets")
+    );
+    let dangling =
+        "SELECT count(*) FROM streets WHERE \"from\" NOT IN (SELECT id FROM intersections)";
+    assert_eq!(number(dangling), 0);
+}
+
+/// A city file to be changed by plain SQL: the triggers call functions that only programs for maps
+/// bring along.
+fn without_triggers(path: &Path) -> Connection {
+    let db = Connection::open(path).unwrap();
+    for name in ["insert", "update2", "update4", "update5", "update6", "update7", "delete"] {
+        db.execute_batch(&format!("DROP TRIGGER rtree_streets_geom_{name}")).unwrap();
+    }
+    db
+}
+
+#[test]
+fn a_street_drawn_elsewhere_becomes_part_of_the_graph() {
+    let folder = tempfile::tempdir().unwrap();
+    let city = sample::grid_city(2);
+    let (path, _) = written(&city, folder.path(), "a.gpkg");
+    let sql = "UPDATE streets SET \"from\" = NULL, \"to\" = NULL WHERE id = 1";
+    without_triggers(&path).execute(sql, []).unwrap();
+    let imported = read_geopackage(&path, &ImportOptions::default()).unwrap();
+    assert_eq!(imported.city.streets.edge_count(), city.streets.edge_count());
+    assert_eq!(imported.city.blocks.len(), 4);
+    assert!(imported.warnings[0].contains("drawn or moved"), "{:?}", imported.warnings);
+}
+
+#[test]
+fn a_part_of_a_city_file_can_be_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let city = sample::grid_city(8);
+    let (path, _) = written(&city, folder.path(), "a.gpkg");
+    let corner = |x: f64, y: f64| city.frame.unproject(exurb_geom::Vec2::new(x, y));
+    let bbox = Some([corner(90.0, 90.0), corner(310.0, 310.0)]);
+    let options = ImportOptions { bbox, ..ImportOptions::default() };
+    let part = read_geopackage(&path, &options).unwrap().city;
+    assert!(part.area_km2() < 0.05);
+    assert!((16..40).contains(&part.buildings.len()), "{}", part.buildings.len());
+}
+
+#[test]
+fn errors_name_the_file_and_the_row() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.gpkg");
+    let read = |path: &Path| read_geopackage(path, &ImportOptions::default()).unwrap_err();
+    assert!(matches!(read(&path), Error::Read { .. }));
+    std::fs::write(&path, "not a database, but long enough to have been one".repeat(9)).unwrap();
+    assert!(matches!(read(&path), Error::Database { .. }));
+
+    write_geopackage(&sample::grid_city(2), &path).unwrap();
+    let sql = "UPDATE streets SET class = 'cowpath' WHERE fid = 3";
+    without_triggers(&path).execute(sql, []).unwrap();
+    let error = read(&path).to_string();
+    assert!(error.contains("row 3") && error.contains("`cowpath`"), "{error}");
+
+    let nowhere = folder.path().join("no such folder").join("b.gpkg");
+    assert!(matches!(write_geopackage(&sample::grid_city(1), &nowhere), Err(Error::Write { .. })));
+}
+
+/// A GeoPackage of somebody else's: streets and plots in a national grid.
+fn foreign(path: &Path, srs_id: i32, definition: &str, at: [f64; 2]) {
+    let db = Connection::open(path).unwrap();
+    db.execute_batch(
+        "CREATE TABLE gpkg_spatial_ref_sys (srs_name, srs_id, organization, organization_coordsys_id, definition, description);
+         CREATE TABLE gpkg_geometry_columns (table_name, column_name, geometry_type_name, srs_id, z, m);
+         CREATE TABLE roads (fid INTEGER PRIMARY KEY, shape BLOB, fclass TEXT);
+         CREATE TABLE plots (fid INTEGER PRIMARY KEY, shape BLOB, zoning TEXT);",
+    )
+    .unwrap();
+    db.execute(
+        "INSERT INTO gpkg_spatial_ref_sys VALUES ('x', ?1, 'EPSG', ?1, ?2, '')",
+        rusqlite::params![srs_id, definition],
+    )
+    .unwrap();
+    let line = |from: [f64; 2], to: [f64; 2]| {
+        let mut blob = vec![b'G', b'P', 0, 1, 0, 0, 0, 0, 1, 2, 0, 0, 0, 2, 0, 0, 0];
+        for p in [from, to] {
+            blob.extend((at[0] + p[0]).to_le_bytes());
+            blob.extend((at[1] + p[1]).to_le_bytes());
+        }
+        blob
+    };
+    for table in ["roads", "plots"] {
+        db.execute(
+            "INSERT INTO gpkg_geometry_columns VALUES (?, 'shape', 'x', ?, 0, 0)",
+            (table, srs_id),
+        )
+        .unwrap();
+    }
+    let mut insert =
+        db.prepare("INSERT INTO roads (shape, fclass) VALUES (?, 'tertiary')").unwrap();
+    insert.execute([line([-100.0, 0.0], [100.0, 0.0])]).unwrap();
+    insert.execute([line([0.0, -100.0], [0.0, 100.0])]).unwrap();
+}
+
+#[test]
+fn lines_of_other_files_become_streets_where_they_lie() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.gpkg");
+    // Prague in the Czech national grid.
+    foreign(&path, 5514, "", [-743_011.0, -1_043_011.0]);
+    let city = read(&path);
+    let origin = city.frame.origin();
+    assert!(
+        (origin.lon - 14.4185).abs() < 1e-3 && (origin.lat - 50.0872).abs() < 1e-3,
+        "{origin:?}"
+    );
+    assert_eq!(city.streets.edge_count(), 4);
+    assert!((city.streets.length_m() - 400.0).abs() < 0.2, "{}", city.streets.length_m());
+    assert!(city.streets.edges().all(|(_, e)| e.data.role() == Role::Main));
+}
+
+#[test]
+fn unknown_grids_keep_their_shape_or_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("metres.gpkg");
+    foreign(&path, 60_000, "LOCAL_CS[\"town grid\",UNIT[\"metre\",1]]", [5e6, 5e6]);
+    let imported = read_geopackage(&path, &ImportOptions::default()).unwrap();
+    assert_eq!(imported.city.streets.length_m(), 400.0);
+    assert!(imported.warnings.iter().any(|w| w.contains("null island")), "{:?}", imported.warnings);
+
+    let path = folder.path().join("feet.gpkg");
+    foreign(&path, 60_000, "LOCAL_CS[\"town grid\",UNIT[\"foot\",0.3048]]", [5e6, 5e6]);
+    let error = read_geopackage(&path, &ImportOptions::default()).unwrap_err().to_string();
+    assert!(error.contains("EPSG:60000") && error.contains("reproject"), "{error}");
 }
