@@ -1,0 +1,28 @@
+"""osm_osmnx.py CITY.osm CITY.geojson: OSMnx makes the same street graph of it."""
+
+import sys
+
+import networkx
+import osmnx
+from cities import assert_close, elements, load, streets_m
+
+
+def main(xml, geojson):
+    city = load(geojson)
+    graph = osmnx.graph_from_xml(xml, bidirectional=True, simplify=False, retain_all=True)
+    graph = osmnx.convert.to_undirected(graph)
+    metres = sum(length for *_, length in graph.edges(data="length"))
+    assert_close("metres of streets", metres, streets_m(city))
+
+    simple = networkx.Graph(graph)
+    degrees = {n: d for n, d in graph.degree() if d != 2}
+    cuts = sum(bool(f["properties"].get("cut")) for f in elements(city, "intersection"))
+    wanted = len(elements(city, "intersection"))
+    # A loop's own node has degree 2 here and may be an intersection there.
+    assert abs(len(degrees) - wanted) <= 0.01 * wanted, f"{len(degrees)} intersections, not {wanted}"
+    largest = max(networkx.connected_components(simple), key=len)
+    print(f"{len(degrees)} intersections, {cuts} cut, {len(largest) / len(simple):.4f} connected")
+    osmnx.simplify_graph(osmnx.graph_from_xml(xml, simplify=False, retain_all=True))
+
+
+main(*sys.argv[1:3])
