@@ -8,8 +8,9 @@ use crate::{Building, StreetGraph};
 const CELL_M: f64 = 25.0;
 /// Points along streets are this far apart, in metres.
 const STEP_M: f64 = 20.0;
-/// Least share of points beside streets with a building near for complete buildings.
-pub const COMPLETE_SHARE: f64 = 0.5;
+/// Least share of points beside streets with a building near for complete buildings. Of 48 maps the
+/// 17 known to be complete have 0.67 to 1.00, the 31 others at most 0.46.
+pub const COMPLETE_SHARE: f64 = 0.55;
 
 /// Share of the length of local streets, counted on both sides, that has a building within about
 /// 50 m: points 25 m beside the street look into their own and the eight cells of 25 m around.

@@ -137,10 +137,7 @@ impl Draft {
     /// The extent, the part of it inside the box asked for, and the half asked for of the densest
     /// square of that.
     fn target(&self, options: &ImportOptions) -> Result<Polygon, DraftError> {
-        let mut target = match &self.extent {
-            Some(extent) => extent.clone(),
-            None => self.bounds().and_then(rectangle).ok_or_else(|| empty("the file"))?,
-        };
+        let mut target = self.area().ok_or_else(|| empty("the file"))?;
         if let Some([sw, ne]) = options.bbox {
             let name = format!("the box {},{},{},{}", sw.lon, sw.lat, ne.lon, ne.lat);
             let asked = self.frame.rectangle_inside(sw, ne).ok_or_else(|| empty(&name))?;
@@ -157,7 +154,11 @@ impl Draft {
         Ok(target)
     }
 
-    /// The box of the streets, or of whatever there is.
+    /// The extent; where the file declares none, the box of the streets, or of whatever there is.
+    pub fn area(&self) -> Option<Polygon> {
+        self.extent.clone().or_else(|| self.bounds().and_then(rectangle))
+    }
+
     fn bounds(&self) -> Option<Bounds> {
         let streets = Bounds::of(self.streets.ways.iter().flat_map(|w| w.line.iter().copied()));
         let polygons = self

@@ -11,8 +11,9 @@ fn main() {
         match read {
             Ok(i) => {
                 let c = &i.city;
+                let share = exurb_city::completeness::built_share(&c.streets, &c.buildings);
                 println!(
-                    "{:30} {:7.1} ms  {:7.1} km {:5} nodes {:5} blocks {:6} buildings {:5} water {:5} use {:5} features {:4} parcels {:?}",
+                    "{share:.3} {:30} {:7.1} ms  {:7.1} km {:5} nodes {:5} blocks {:6} buildings {:5} water {:5} use {:5} features {:4} parcels {:?}",
                     c.metadata.name,
                     seconds * 1e3,
                     c.streets.length_m() / 1e3,

@@ -94,6 +94,11 @@ pub fn is_waterway(tags: &Tags) -> bool {
     waterway_width_m(tags).is_some() && !tags.says("tunnel")
 }
 
+/// Is it a piece of coast?
+pub fn is_coastline(tags: &Tags) -> bool {
+    tags.get("natural") == Some("coastline")
+}
+
 /// Width of a waterway by its tag, else by its class.
 pub fn waterway_width_m(tags: &Tags) -> Option<f64> {
     let usual = match tags.get("waterway")? {

@@ -49,6 +49,8 @@ pub struct Elements {
     pub bounds: Option<Bounds>,
     /// Attribution given in the file.
     pub attribution: Vec<String>,
+    /// Written by this program: its attribution is the whole of it.
+    pub is_ours: bool,
     pub nodes: Vec<Node>,
     /// Ids and tags of nodes that are features.
     pub tagged: Vec<(i64, Tags)>,
@@ -98,6 +100,7 @@ impl Elements {
         let shift = self.refs.len();
         self.bounds = self.bounds.or(other.bounds);
         self.attribution.append(&mut other.attribution);
+        self.is_ours |= other.is_ours;
         self.nodes.append(&mut other.nodes);
         self.tagged.append(&mut other.tagged);
         self.refs.append(&mut other.refs);

@@ -27,15 +27,17 @@ pub fn city(elements: Elements, file: &str, options: &ImportOptions) -> Result<I
 
     let mut draft = Draft::new(frame);
     let corner = |lon, lat| LonLat { lon, lat };
-    draft.extent = extent
-        .and_then(|[w, s, e, n]| draft.frame.rectangle_inside(corner(w, s), corner(e, n)));
+    draft.extent =
+        extent.and_then(|[w, s, e, n]| draft.frame.rectangle_inside(corner(w, s), corner(e, n)));
     let streets = streets::read(&elements, &places);
     draft.streets.ways = streets.ways;
     draft.broken_ends = streets.broken_ends;
     surfaces::read(&elements, &places, &mut draft, &mut warnings);
 
     draft.metadata.name = name(file).into();
-    draft.metadata.credit(&[ATTRIBUTION.to_owned()]);
+    if !elements.is_ours {
+        draft.metadata.credit(&[ATTRIBUTION.to_owned()]);
+    }
     draft.metadata.credit(&elements.attribution);
     if elements.misplaced > 0 {
         let n = elements.misplaced;

@@ -9,10 +9,12 @@
 //! | `read_pbf`, `read_xml`, `read_overpass` | the formats |
 //! | `import` | the passes in order: what matters, where it lies, what it is |
 //! | `streets`, `buildings`, `areas`, `features` | the meaning of tags |
+//! | `surfaces`, `coast` | everything that is no street; the sea |
 //! | `outline` | rings and polygons of ways and relations |
 
 mod areas;
 mod buildings;
+mod coast;
 mod elements;
 mod error;
 mod features;
@@ -27,6 +29,9 @@ mod read_xml;
 mod streets;
 mod surfaces;
 mod tags;
+
+/// How files written here begin to say who wrote them.
+const GENERATOR: &str = "exurb";
 
 pub use error::Error;
 pub use import::ATTRIBUTION;

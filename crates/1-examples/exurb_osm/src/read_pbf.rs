@@ -141,7 +141,11 @@ fn decode_header(data: Bytes) -> Result<Decoded, String> {
         header.required_features.into_iter().find(|f| !known.contains(&f.as_str()));
     let degrees = |nano: i64| nano as f64 * 1e-9;
     let bounds = header.bbox.map(|b| [b.left, b.bottom, b.right, b.top].map(degrees));
-    let elements = Elements { bounds, ..Elements::default() };
+    let mut elements = Elements { bounds, ..Elements::default() };
+    elements.is_ours = header.writingprogram.is_some_and(|p| p.starts_with(crate::GENERATOR));
+    if let Some(source) = header.source.filter(|_| elements.is_ours) {
+        elements.attribution.extend(source.split("; ").map(str::to_owned));
+    }
     Ok(Decoded { is_header: true, unknown_feature, elements, ..Decoded::default() })
 }
 

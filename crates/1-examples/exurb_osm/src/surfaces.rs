@@ -3,14 +3,14 @@
 use std::sync::Arc;
 
 use exurb_city::{Area, Building, Draft, Feature, FeatureShape, Origin, Parcel, Provenance};
-use exurb_geom::{GridPoint, Polygon};
+use exurb_geom::{BoxGrid, GridPoint, Polygon, Vec2, offset};
 use rayon::prelude::*;
 
 use crate::elements::{Elements, Way};
 use crate::outline::{self, Repairs};
-use crate::places::{self, Places};
+use crate::places::{self, Places, Vertex};
 use crate::tags::Tags;
-use crate::{areas, buildings, features};
+use crate::{areas, buildings, coast, features};
 
 /// What a way or relation is, by its tags.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,7 +36,8 @@ fn kind(tags: &Tags) -> Option<Kind> {
 
 /// Do these tags make something other than a street?
 pub fn matters(tags: &Tags) -> bool {
-    !tags.is_empty() && (kind(tags).is_some() || areas::is_waterway(tags))
+    !tags.is_empty()
+        && (kind(tags).is_some() || areas::is_waterway(tags) || areas::is_coastline(tags))
 }
 
 /// Something read, on its way to its layer.
@@ -79,6 +80,8 @@ pub fn read(elements: &Elements, places: &Places, draft: &mut Draft, warnings: &
         (if is_building { &mut counts.buildings } else { &mut counts.others }).add(repairs);
         found.into_iter().for_each(|found| put(found, draft));
     }
+    waterways(elements, places, draft);
+    coast(elements, places, draft, warnings);
     for (id, tags) in &elements.tagged {
         let at = places::search(&elements.nodes, *id, 0)
             .and_then(|i| places::project(&draft.frame, &elements.nodes[i]));
@@ -88,6 +91,56 @@ pub fn read(elements: &Elements, places: &Places, draft: &mut Draft, warnings: &
     }
     warnings.extend(counts.buildings.warning("buildings"));
     warnings.extend(counts.others.warning("areas"));
+}
+
+/// Rivers, canals and streams drawn as lines become areas of their width, but where most of their
+/// vertices lie in water already.
+fn waterways(elements: &Elements, places: &Places, draft: &mut Draft) {
+    let boxes = BoxGrid::of(draft.water.iter().map(|a| &a.polygon));
+    let is_wet = |p: &Vec2| {
+        let (at, mut near) = (GridPoint::round(*p), Vec::new());
+        boxes.meeting(at, at, &mut near);
+        near.iter().any(|i| draft.water[*i as usize].polygon.contains(at))
+    };
+    let lines = elements.ways.par_iter().filter(|w| areas::is_waterway(&w.tags));
+    let areas = lines.flat_map_iter(|way| {
+        let width_m = areas::waterway_width_m(&way.tags).unwrap_or_default();
+        let class: Arc<str> = way.tags.get("waterway").unwrap_or_default().into();
+        let vertices: Vec<Option<Vertex>> = places.vertices(elements, way).collect();
+        let runs = vertices.split(Option::is_none).map(|run| {
+            let mut points: Vec<GridPoint> = run.iter().flatten().map(|(_, p)| *p).collect();
+            points.dedup();
+            exurb_geom::polyline::to_m(&points)
+        });
+        let dry = runs.filter(|run| {
+            run.len() > 1 && 2 * run.iter().filter(|p| is_wet(p)).count() <= run.len()
+        });
+        let polygons =
+            dry.flat_map(|run| offset::carriageway(&run, width_m / 2.0, offset::Cap::Round));
+        let area = |polygon| Area { id: 0, polygon, class: class.clone() };
+        polygons.map(area).collect::<Vec<_>>()
+    });
+    let areas: Vec<Area> = areas.collect();
+    draft.water.extend(areas);
+}
+
+/// The sea behind the coastline.
+fn coast(elements: &Elements, places: &Places, draft: &mut Draft, warnings: &mut Vec<String>) {
+    let mut lines: Vec<Vec<Vertex>> = Vec::new();
+    for way in elements.ways.iter().filter(|w| areas::is_coastline(&w.tags)) {
+        let vertices: Vec<Option<Vertex>> = places.vertices(elements, way).collect();
+        lines.extend(
+            vertices.split(Option::is_none).map(|run| run.iter().copied().flatten().collect()),
+        );
+    }
+    let Some(map) = draft.area().filter(|_| !lines.is_empty()) else { return };
+    let sea = coast::close(lines, &map);
+    if sea.dropped > 0 {
+        let n = sea.dropped;
+        warnings.push(format!("{n} pieces of coastline end inside the map; their sea is left out"));
+    }
+    let area = |polygon| Area { id: 0, polygon, class: "sea".into() };
+    draft.water.extend(sea.polygons.into_iter().map(area));
 }
 
 fn put(found: Found, draft: &mut Draft) {
