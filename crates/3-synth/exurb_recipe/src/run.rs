@@ -1,0 +1,151 @@
+//! Running a recipe: read, then step by step.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
+use exurb_city::{City, Imported};
+use exurb_operation::{Example, Run, Scope};
+use serde_json::Value;
+
+use crate::{Error, Recipe, Registry, Source, Step, Target, Within, open, registry, target};
+
+/// What a recipe reads before it works.
+#[derive(Clone, Debug)]
+pub struct Inputs {
+    /// The city the first step begins with.
+    pub city: City,
+    /// The examples, in the recipe's order.
+    pub examples: Vec<Example>,
+    /// How long reading took, in seconds.
+    pub read_seconds: f64,
+}
+
+/// What a recipe made.
+#[derive(Clone, Debug)]
+pub struct Made {
+    /// The city; its metadata hold the recipe.
+    pub city: City,
+    /// Seconds taken by each kind of work.
+    pub seconds: Seconds,
+}
+
+/// How long each kind of work took, in seconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Seconds {
+    /// Reading the examples and the city.
+    pub read: f64,
+    /// Learning from the examples.
+    pub learn: f64,
+    /// Editing the city.
+    pub synthesise: f64,
+    /// Writing files.
+    pub write: f64,
+}
+
+impl Recipe {
+    /// Reads what the recipe names and runs its steps. Files lie in `folder` or in the current one.
+    /// Warnings go to `run`, which also cancels.
+    pub fn run(&self, folder: &Path, run: &Run) -> Result<City, Error> {
+        let registry = Registry::all();
+        let inputs = self.read(folder, &registry, run)?;
+        Ok(self.make(inputs, folder, &registry, run)?.city)
+    }
+
+    /// Reads the city and the examples, and checks that the steps can begin.
+    pub fn read(&self, folder: &Path, registry: &Registry, run: &Run) -> Result<Inputs, Error> {
+        let started = Instant::now();
+        let mut examples = Vec::new();
+        for source in &self.examples {
+            let city = Arc::new(read_source(source, folder, run)?);
+            examples.push(Example { city, weight: source.weight });
+        }
+        let city = self.first_city(&examples, folder, registry, run)?;
+        run.check()?;
+        Ok(Inputs { city, examples, read_seconds: started.elapsed().as_secs_f64() })
+    }
+
+    fn first_city(
+        &self,
+        examples: &[Example],
+        folder: &Path,
+        registry: &Registry,
+        run: &Run,
+    ) -> Result<City, Error> {
+        let first = self.steps.first().map(|step| registry.find(&step.op)).transpose();
+        let card = first.map_err(Error::Recipe)?.map(|operation| operation.card());
+        match (&self.city, card) {
+            (Some(source), _) => read_source(source, folder, run),
+            (None, Some(card)) if registry::needs_city(&card) => Err(Error::Recipe(format!(
+                "`{}` works on a city; begin the recipe with `[city]` or with a step that makes streets",
+                card.name()
+            ))),
+            (None, _) => {
+                let target = self.target.clone().unwrap_or(Target::Size(Default::default()));
+                target::begin(&target, examples.first().map(|e| &*e.city), folder, run)
+            }
+        }
+    }
+
+    /// Runs the steps on what was read. The city's metadata get the recipe in its portable form.
+    pub fn make(
+        &self,
+        inputs: Inputs,
+        folder: &Path,
+        registry: &Registry,
+        run: &Run,
+    ) -> Result<Made, Error> {
+        let Inputs { mut city, examples, read_seconds } = inputs;
+        let history = city.metadata.recipe.clone();
+        let mut seconds = Seconds { read: read_seconds, ..Seconds::default() };
+        for step in &self.steps {
+            let operation = registry.find(&step.op).map_err(Error::Recipe)?;
+            let scope = scope(&step.scope, &city, folder)?;
+            let chosen = self.choose(step, &city, &examples);
+            run.phase(&step.op);
+            let run = run.seeded(step.seed.unwrap_or(self.seed));
+            let params = Value::Object(step.params.clone());
+            let outcome = operation.run(&city, &scope, &chosen, params, &run)?;
+            seconds.learn += outcome.seconds.learn;
+            seconds.synthesise += outcome.seconds.synthesise;
+            city = outcome.city;
+        }
+        run.check()?;
+        city.metadata.recipe = self.portable(registry).after(&history, registry).print()?;
+        Ok(Made { city, seconds })
+    }
+
+    /// The examples a step learns from.
+    fn choose(&self, step: &Step, city: &City, examples: &[Example]) -> Vec<Example> {
+        match &step.examples {
+            None if !self.examples.is_empty() => examples.to_vec(),
+            None if self.city.is_none() => Vec::new(),
+            Some(names) if !names.is_empty() => {
+                let named = self.examples.iter().zip(examples);
+                let chosen = named.filter(|(source, _)| names.contains(&source.name()));
+                chosen.map(|(_, example)| example.clone()).collect()
+            }
+            _ => vec![Example::new(city.clone())],
+        }
+    }
+}
+
+fn scope(within: &Within, city: &City, folder: &Path) -> Result<Scope, Error> {
+    Ok(match within {
+        Within::All => Scope::All,
+        Within::Blocks(blocks) => Scope::Blocks(blocks.clone()),
+        Within::File(file) => Scope::Inside(target::read_in_frame(file, &city.frame, folder)?),
+    })
+}
+
+/// The city of a source; what its reader warns of goes to `run`.
+pub fn read_source(source: &Source, folder: &Path, run: &Run) -> Result<City, Error> {
+    let path = open::locate(&source.file, folder)?;
+    run.phase(&format!("reading {}", source.name()));
+    let Imported { mut city, warnings } = open::open_city(&path, &source.import_options())?;
+    city.metadata.name = source.name().into();
+    let run = run.named(&source.name());
+    warnings.into_iter().for_each(|warning| run.warn(warning));
+    run.check()?;
+    Ok(city)
+}

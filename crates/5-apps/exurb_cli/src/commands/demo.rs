@@ -1,0 +1,115 @@
+//! `exurb demo`: a whole city from an example that comes with the program. The demo is a recipe
+//! like any other; it writes that recipe, too.
+
+use std::path::{Path, PathBuf};
+
+use clap::{ArgMatches, Args, Command, FromArgMatches};
+use exurb_recipe::{Export, Recipe, Registry, Source, Step, Target, builtin};
+
+use crate::options::RunOptions;
+use crate::output::{self, Outputs};
+use crate::pending::Pending;
+use crate::problem::Problem;
+use crate::{job, report, summary};
+
+#[derive(Args)]
+struct Options {
+    /// Folder to write into, made when it is not there
+    #[arg(long, short, value_name = "DIR", default_value = "exurb-demo")]
+    output: PathBuf,
+    /// Built-in example to learn from
+    #[arg(long, value_name = "NAME", default_value = builtin::NAMES[0], value_parser = builtin::NAMES)]
+    style: String,
+    /// Random seed: another number, another city
+    #[arg(long, value_name = "N", default_value_t = 1,
+          value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
+    seed: u64,
+    #[command(flatten)]
+    run: RunOptions,
+}
+
+/// The operations of the demo, in order.
+const STEPS: [&str; 5] =
+    ["streets grow", "streets furnish", "blocks parcels", "blocks footprints", "buildings extrude"];
+/// What it writes beside the recipe and the credits; the last is a perspective picture.
+const FILES: [&str; 8] = [
+    "city.gpkg",
+    "city.geojson",
+    "city.osm",
+    "city.osm.pbf",
+    "city.glb",
+    "map.svg",
+    "map.png",
+    "view.png",
+];
+
+/// The command.
+pub fn command() -> Command {
+    let about = "Make a whole city of 2 km x 2 km from a built-in example, in every format";
+    Options::augment_args(Command::new("demo")).about(about)
+}
+
+/// Runs it.
+pub fn run(matches: &ArgMatches, registry: &Registry) -> Result<(), Problem> {
+    let options = Options::from_arg_matches(matches).map_err(|e| Problem::usage(e.to_string()))?;
+    let folder = &options.output;
+    let recipe = recipe(&options.style, options.seed);
+    output::make_folder(folder)?;
+    let (made, example) = job::work(&options.run, recipe.seed, |run| {
+        let outputs = Outputs::prepare(&recipe.exports, folder)?;
+        let texts = ["recipe.toml", "ATTRIBUTION.txt"].map(|name| Pending::new(&folder.join(name)));
+        let [recipe_file, attribution_file] = texts;
+        let inputs = recipe.read(Path::new(""), registry, run)?;
+        let example = inputs.examples.first().map(|e| e.city.clone());
+        let mut made = recipe.make(inputs, Path::new(""), registry, run)?;
+        made.seconds.write = outputs.write(&made.city, run)?;
+        for (file, text) in
+            [(recipe_file?, recipe.print()?), (attribution_file?, credits(&made.city))]
+        {
+            file.write(text.as_bytes())?;
+            file.commit()?;
+        }
+        Ok((made, example))
+    })?;
+    summary::report(&made.city, example.as_deref(), Some(made.seconds), &[], &options.run)?;
+    if !options.run.json && !options.run.quiet {
+        report::result(&next_steps(folder))?;
+    }
+    Ok(())
+}
+
+fn recipe(style: &str, seed: u64) -> Recipe {
+    let mut exports: Vec<Export> =
+        FILES.iter().map(|file| Export { file: file.into(), ..Export::default() }).collect();
+    if let Some(view) = exports.last_mut() {
+        view.view = Some("3d".to_owned());
+    }
+    Recipe {
+        seed,
+        target: Some(Target::Size(Default::default())),
+        examples: vec![Source::new(format!("{}{style}", builtin::PREFIX))],
+        steps: STEPS.into_iter().map(Step::new).collect(),
+        exports,
+        ..Recipe::default()
+    }
+}
+
+fn credits(city: &exurb_city::City) -> String {
+    let lines = city.metadata.attribution.join("\n");
+    format!("This city was synthesised by exurb from:\n{lines}\n")
+}
+
+fn next_steps(folder: &Path) -> String {
+    let dir = folder.display();
+    format!(
+        "
+Look at {dir}/map.png and {dir}/view.png.
+Open {dir}/city.gpkg in QGIS, {dir}/city.glb in Blender or a browser, {dir}/city.osm in JOSM.
+
+Next, with a map of your own (.osm.pbf, .osm, .geojson, ...):
+  exurb streets grow --example YOUR_MAP -o city.gpkg
+  exurb blocks parcels city.gpkg --example YOUR_MAP -o city.gpkg
+Or change {dir}/recipe.toml and run it:
+  exurb run {dir}/recipe.toml -o DIR"
+    )
+}
