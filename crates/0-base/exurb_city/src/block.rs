@@ -121,7 +121,9 @@ fn blocks_of_face(graph: &StreetGraph, face: &Face) -> Vec<Block> {
         .collect();
     let face_area_m2 = face.polygon.area_m2();
     overlay::difference(&face.polygon, &roads)
-        .into_iter()
+        .iter()
+        // Rounding can make a kerb line touch itself.
+        .flat_map(overlay::repair)
         .filter(|polygon| polygon.area_m2() >= LEAST_AREA_M2)
         .map(|polygon| {
             let island = polygon.mean_width_m() < ISLAND_WIDTH_M;

@@ -1,7 +1,7 @@
 //! Edits of a graph, one function each. Every edit keeps total length within what it says, never
 //! leaves a dangling id, and never makes an edge without length.
 
-use exurb_geom::{GridPoint, Polygon, overlay, polyline};
+use exurb_geom::{GridPoint, polyline};
 
 use crate::{EdgeId, Graph, NodeId};
 
@@ -126,63 +126,6 @@ impl<N: Clone + Default, E: Clone> Graph<N, E> {
             self.merge_nodes(edge.from, edge.to);
         }
         Some(edge.from)
-    }
-
-    /// Removes what lies outside `area` and cuts edges at its boundary. Returns the nodes made by
-    /// cutting, in order. Pieces shorter than 1 mm go.
-    pub fn clip(&mut self, area: &Polygon) -> Vec<NodeId> {
-        let mut cut = Vec::new();
-        let ids: Vec<EdgeId> = self.edges().map(|(id, _)| id).collect();
-        for id in ids {
-            let edge = self.edge(id);
-            let (from, to) = (edge.from, edge.to);
-            let line = edge.line().to_vec();
-            let crosses = area.segments().any(|(c, d)| {
-                line.windows(2).any(|w| exurb_geom::grid::intersects(w[0], w[1], c, d))
-            });
-            if !crosses {
-                if !area.contains(line[0]) {
-                    self.remove_edge(id);
-                }
-                continue;
-            }
-            let Some(edge) = self.remove_edge(id) else { continue };
-            let line_m = edge.line_m();
-            let total = polyline::length(&line_m);
-            let mut pieces: Vec<(f64, f64, Vec<GridPoint>)> = overlay::clip_line(area, &line_m)
-                .iter()
-                .map(|piece| {
-                    let along = |p| polyline::nearest(&line_m, p).1;
-                    let (s, e) = (along(piece[0]), along(piece[piece.len() - 1]));
-                    let mut points = polyline::round(piece);
-                    if s > e {
-                        points.reverse();
-                    }
-                    (s.min(e), s.max(e), points)
-                })
-                .filter(|(.., points)| points.len() > 1)
-                .collect();
-            pieces.sort_by(|a, b| a.0.total_cmp(&b.0));
-            for (start, end, points) in pieces {
-                let mut node_at = |along: f64, at: GridPoint, graph: &mut Self| {
-                    if along < 1e-3 && at == graph.node(from).at {
-                        from
-                    } else if along > total - 1e-3 && at == graph.node(to).at {
-                        to
-                    } else {
-                        let node = graph.add_node(at, N::default());
-                        cut.push(node);
-                        node
-                    }
-                };
-                let a = node_at(start, points[0], self);
-                let b = node_at(end, points[points.len() - 1], self);
-                self.add_edge(a, b, points, edge.data.clone());
-            }
-        }
-        self.remove_isolated_nodes();
-        cut.retain(|n| self.get_node(*n).is_some());
-        cut
     }
 
     /// Removes every node without edges.

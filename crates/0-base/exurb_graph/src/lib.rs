@@ -11,6 +11,7 @@
 //! | [`faces`] | the faces between the edges, with dead ends and islands |
 //! | [`laws`] | what every finished graph keeps |
 
+mod clip;
 pub mod edit;
 pub mod faces;
 mod graph;
