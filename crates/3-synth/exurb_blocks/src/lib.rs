@@ -1,1 +1,16 @@
 //! Blocks filled by example: parcels and footprints.
+//!
+//! | room | what it does |
+//! |---|---|
+//! | [`parcels`] | cuts blocks into lots that front on their streets |
+//!
+//! Both learn from whole blocks of the example ([`library`]) and let each new block take after one
+//! of them. [`operations()`] lists the rooms for the command line, recipes and the studio.
+
+pub mod library;
+mod operations;
+pub mod parcels;
+mod ring;
+mod scoped;
+
+pub use operations::operations;

@@ -1,0 +1,285 @@
+use std::sync::Arc;
+
+use exurb_city::{Block, BlockClass, City};
+use exurb_geom::{Vec2, polyline};
+
+use super::fronts::{BlockContents, Front, gap_m};
+use super::{BuildingSample, Features, OpenLand};
+use crate::ring::Ring;
+
+/// A block of an example and all it teaches.
+#[derive(Clone, Debug)]
+pub struct ExampleBlock {
+    /// Name of its example.
+    pub source: Arc<str>,
+    /// Its number in the example.
+    pub id: u32,
+    /// Weight of its example.
+    pub weight: f64,
+    /// What it is compared by.
+    pub features: Features,
+    /// Class of open land, where that takes most of the block.
+    pub open: Option<Arc<str>>,
+    /// Frontages of its lots in order along the kerb, in metres; empty where nothing is known.
+    pub frontages_m: Vec<f64>,
+    /// Usual depth of its lots in metres; 0 where nothing is known.
+    pub depth_m: f64,
+    /// Share of the kerb that lots front on, corners' flanks left out.
+    pub fronted_share: f64,
+    /// Share of lots without a building; `None` where the example's buildings are not complete.
+    pub empty_share: Option<f64>,
+    /// Footprints by area of the block.
+    pub coverage: f64,
+    /// Buildings along its streets, in order along the kerb.
+    pub buildings: Vec<BuildingSample>,
+}
+
+/// Blocks under this area teach nothing, in m².
+const LEAST_BLOCK_M2: f64 = 100.0;
+/// From this share of open land on, a block with next to no building is open.
+const OPEN_SHARE: f64 = 0.5;
+/// Coverage up to which a block of open land stays open: a park may hold a pavilion.
+const OPEN_COVERAGE: f64 = 0.06;
+/// Buildings under this share of the block's usual footprint are garages and sheds.
+const ANNEX_SHARE: f64 = 0.4;
+/// Walls nearer than this are one, in metres.
+const SHARED_WALL_M: f64 = 0.4;
+/// Depth of lots, in metres, at least and at most.
+const DEPTHS_M: (f64, f64) = (8.0, 150.0);
+/// Outlines are simplified by this much, in metres.
+const OUTLINE_TOLERANCE_M: f64 = 0.4;
+/// Outlines with more corners than this are simplified further.
+const MOST_CORNERS: usize = 24;
+
+/// What `block` teaches; `None` for islands and slivers.
+pub fn measure(
+    city: &City,
+    block: &Block,
+    contents: &BlockContents,
+    features: Features,
+    open: &OpenLand,
+    weight: f64,
+) -> Option<ExampleBlock> {
+    let area = block.polygon.area_m2();
+    if block.class == BlockClass::Island || area < LEAST_BLOCK_M2 {
+        return None;
+    }
+    let footprints = contents.buildings.iter().map(|i| &city.buildings[*i as usize].polygon);
+    let coverage = footprints.map(|p| p.area_m2()).sum::<f64>() / area;
+    let open = open
+        .share(&block.polygon)
+        .filter(|(_, share)| *share >= OPEN_SHARE && coverage <= OPEN_COVERAGE)
+        .map(|(class, _)| class);
+    let rings: Vec<Ring> = block.polygon.rings().map(Ring::of).collect();
+    let fronts = row_of_fronts(city, contents, &rings);
+    let mut buildings = samples(city, &fronts, &rings);
+    let mut out = ExampleBlock {
+        source: city.metadata.name.clone(),
+        id: block.id,
+        weight,
+        features,
+        open,
+        frontages_m: buildings.iter().map(|b| b.frontage_m).collect(),
+        depth_m: 0.0,
+        fronted_share: 0.0,
+        empty_share: None,
+        coverage,
+        buildings: Vec::new(),
+    };
+    let lots = lots(city, contents, &rings);
+    if lots.len() >= 2 {
+        out.frontages_m = lots.iter().map(|lot| lot.0).collect();
+        out.depth_m = median(lots.iter().map(|lot| lot.1)).clamp(DEPTHS_M.0, DEPTHS_M.1);
+        out.fronted_share = 1.0;
+        let built = contents.buildings.len().min(lots.len()) as f64;
+        out.empty_share = Some(1.0 - built / lots.len() as f64);
+    } else if !buildings.is_empty() {
+        measure_frontage(&mut out, &buildings, &rings, area);
+        out.empty_share = Some(0.0);
+    } else {
+        out.empty_share = Some(1.0);
+    }
+    if !city.metadata.buildings_complete {
+        out.empty_share = None;
+    }
+    buildings.iter_mut().for_each(simplify);
+    out.buildings = buildings;
+    Some(out)
+}
+
+/// Depth and share of frontage, from buildings alone: what is fronted times the depth is the block,
+/// unless houses line a small part of it only.
+fn measure_frontage(
+    out: &mut ExampleBlock,
+    buildings: &[BuildingSample],
+    rings: &[Ring],
+    area_m2: f64,
+) {
+    let fronted: f64 = out.frontages_m.iter().sum();
+    let kerb: f64 = rings.iter().map(Ring::length_m).sum();
+    let depth = area_m2 / fronted.max(1.0);
+    let flanks: f64 = rings
+        .iter()
+        .flat_map(|ring| {
+            let sides = ring.sides();
+            let flanks = crate::parcels::flanks(&sides, depth.min(60.0));
+            sides
+                .into_iter()
+                .zip(flanks)
+                .filter(|(_, flank)| *flank)
+                .map(|(side, _)| side.length_m())
+        })
+        .sum();
+    out.fronted_share = (fronted / (kerb - flanks).max(1.0)).min(1.0);
+    let used = median(buildings.iter().map(|b| b.setback_m * 2.0 + b.size_m.y * 2.0));
+    let depth = if out.fronted_share < 0.6 { depth.min(used.max(20.0)) } else { depth };
+    out.depth_m = depth.clamp(DEPTHS_M.0, DEPTHS_M.1);
+}
+
+/// Frontage and depth of the parcels that lie at the kerb, in order along it.
+fn lots(city: &City, contents: &BlockContents, rings: &[Ring]) -> Vec<(f64, f64)> {
+    // Cadastres draw parcels to the kerb, to the pavement or to a line between.
+    const AT_KERB_M: f64 = 8.0;
+    let mut found: Vec<(usize, f64, f64, f64)> = contents
+        .parcels
+        .iter()
+        .filter_map(|i| {
+            let polygon = &city.parcels[*i as usize].polygon;
+            let front = Front::of(polygon, rings).filter(|f| f.setback_m < AT_KERB_M)?;
+            let width = front.size_m.x.max(1.0);
+            Some((front.ring, front.at_m, width, polygon.area_m2() / width))
+        })
+        .filter(|lot| lot.2 > 2.0 && lot.3 > 2.0)
+        .collect();
+    found.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    found.into_iter().map(|lot| (lot.2, lot.3)).collect()
+}
+
+/// Buildings that front on the kerb, in order along it: no annexes, none behind another.
+fn row_of_fronts(city: &City, contents: &BlockContents, rings: &[Ring]) -> Vec<(u32, Front)> {
+    let area = |i: &u32| city.buildings[*i as usize].polygon.area_m2();
+    let usual = median(contents.buildings.iter().map(area));
+    let mut fronts: Vec<(u32, Front)> = contents
+        .buildings
+        .iter()
+        .filter(|i| area(i) >= usual * ANNEX_SHARE)
+        .filter_map(|i| Some((*i, Front::of(&city.buildings[*i as usize].polygon, rings)?)))
+        .collect();
+    fronts.sort_by(|a, b| a.1.setback_m.total_cmp(&b.1.setback_m).then(a.0.cmp(&b.0)));
+    let mut kept: Vec<(u32, Front)> = Vec::new();
+    for (i, front) in fronts {
+        let (start, end) = front.span();
+        let hidden = kept.iter().any(|(_, other)| {
+            let (s, e) = other.span();
+            let shared = (end.min(e) - start.max(s)) / (end - start).max(0.1);
+            other.ring == front.ring
+                && shared > 0.5
+                && other.setback_m + other.size_m.y * 0.5 < front.setback_m
+        });
+        if !hidden {
+            kept.push((i, front));
+        }
+    }
+    kept.sort_by(|a, b| {
+        a.1.ring.cmp(&b.1.ring).then(a.1.at_m.total_cmp(&b.1.at_m)).then(a.0.cmp(&b.0))
+    });
+    kept
+}
+
+fn samples(city: &City, fronts: &[(u32, Front)], rings: &[Ring]) -> Vec<BuildingSample> {
+    let polygon = |k: usize| &city.buildings[fronts[k].0 as usize].polygon;
+    let corners: Vec<Vec<Vec2>> = rings
+        .iter()
+        .map(|ring| {
+            let convex = ring.sides().into_iter().filter(|s| s.turn_before_rad > 0.0);
+            convex.map(|s| ring.point_at(s.start_m)).collect()
+        })
+        .collect();
+    (0..fronts.len())
+        .map(|k| {
+            let front = &fronts[k].1;
+            let cap = front.size_m.x.max(8.0) * 2.0;
+            let gap_to = |other: usize, along: f64| {
+                if other == k || fronts[other].1.ring != front.ring {
+                    return cap;
+                }
+                if gap_m(polygon(k), polygon(other)) < SHARED_WALL_M {
+                    return 0.0;
+                }
+                along.clamp(0.5, cap)
+            };
+            let length = rings[front.ring].length_m();
+            let ahead = |from: f64, to: f64| {
+                let d = (to - from).rem_euclid(length);
+                if d > length / 2.0 { d - length } else { d }
+            };
+            let before = (k + fronts.len() - 1) % fronts.len();
+            let after = (k + 1) % fronts.len();
+            let gap_before_m = gap_to(before, ahead(fronts[before].1.span().1, front.span().0));
+            let gap_after_m = gap_to(after, ahead(front.span().1, fronts[after].1.span().0));
+            let near_corner = front.setback_m * 1.5 + 4.0;
+            let at_corner = corners[front.ring]
+                .iter()
+                .any(|c| polygon(k).exterior().iter().any(|p| p.to_m().distance(*c) < near_corner));
+            BuildingSample {
+                frontage_m: front.size_m.x + (gap_before_m + gap_after_m) / 2.0,
+                size_m: front.size_m,
+                setback_m: front.setback_m,
+                gap_before_m,
+                gap_after_m,
+                turn_rad: front.turn_rad,
+                at_corner,
+                area_m2: polygon(k).area_m2(),
+                outline: front.outline.clone(),
+            }
+        })
+        .collect()
+}
+
+/// Outlines in as few corners as they can be told with.
+fn simplify(building: &mut BuildingSample) {
+    for ring in &mut building.outline {
+        let mut tolerance = OUTLINE_TOLERANCE_M;
+        let mut simple = simplified_ring(ring, tolerance);
+        while simple.len() > MOST_CORNERS && tolerance < 5.0 {
+            tolerance *= 1.6;
+            simple = simplified_ring(ring, tolerance);
+        }
+        *ring = simple;
+    }
+    building.outline.retain(|ring| ring.len() >= 3);
+    if building.outline.is_empty() {
+        let (w, d) = (building.size_m.x, building.size_m.y);
+        let corners = [(0.0, 0.0), (w, 0.0), (w, d), (0.0, d)];
+        building.outline = vec![corners.map(|(x, y)| Vec2::new(x, y)).to_vec()];
+    }
+}
+
+/// A closed ring simplified between its first point and the one farthest from it.
+fn simplified_ring(ring: &[Vec2], tolerance_m: f64) -> Vec<Vec2> {
+    let Some(first) = ring.first() else { return Vec::new() };
+    let far = (0..ring.len())
+        .max_by(|i, j| ring[*i].distance(*first).total_cmp(&ring[*j].distance(*first)))
+        .unwrap_or(0);
+    let back: Vec<Vec2> = ring[far..].iter().chain([first]).copied().collect();
+    let mut out = polyline::simplify(&ring[..=far], tolerance_m);
+    out.pop();
+    out.extend(polyline::simplify(&back, tolerance_m));
+    out.pop();
+    // The ring's first point may itself lie on a straight side.
+    let n = out.len();
+    if n > 3 {
+        let (a, b) = (out[n - 1], out[1]);
+        if polyline::nearest_on_segment(a, b, out[0]).0.distance(out[0]) < tolerance_m {
+            out.remove(0);
+        }
+    }
+    out
+}
+
+/// The middle value; 0 when there is none.
+pub fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut sorted: Vec<f64> = values.collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
+}

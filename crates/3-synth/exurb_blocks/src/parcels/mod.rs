@@ -1,0 +1,195 @@
+//! `blocks parcels`: cuts blocks into lots that front on their streets, and leaves some of them open.
+//!
+//! Source: Aliaga, Vanegas, Beneš 2008, *Interactive Example-Based Urban Layout Synthesis*, section
+//! 3.1.2. Steps: 1 each block takes after one of the example blocks most like it (crate `library`);
+//! after a park, it is a park; 2 nearly rectangular blocks of one or two rows get Voronoi sites along
+//! their main axis ([`axis_voronoi`]), all others along their kerb ([`stretches`]); 3 the borders
+//! between the sites' cells cut the block ([`tiling`]); 4 pieces without frontage, and slivers, join
+//! the neighbour of the longest shared border.
+//!
+//! Departures: the paper has the axis only. In L-shaped, curved and deep blocks its cells are cut off
+//! from the street, so there the sites stand on the kerb, close enough that their diagram is that of
+//! the kerb itself, and each lot reaches back to the middle of the block; land far behind the rows
+//! falls to one of them. Frontages come in the order of the example's kerb, not from a normal
+//! distribution. Blocks whose example is built on one side only get a row and leave the rest.
+//! Units: metres. Complexity: O(n²) in the vertices of a block, linear in blocks. Each block has its
+//! own random stream by place.
+
+mod axis_voronoi;
+mod error;
+mod learn;
+mod params;
+mod stretches;
+mod synthesize;
+#[cfg(test)]
+mod tests;
+mod tiling;
+
+use std::sync::Arc;
+
+use exurb_city::{Area, Block, BlockClass, City, Edit, Origin, Parcel, Provenance, block};
+use exurb_geom::GridPoint;
+use exurb_operation::{Card, Example, Failure, Operation, Run, Scope, rng};
+use rayon::prelude::*;
+
+pub use error::Error;
+pub use learn::Learned;
+pub use params::Params;
+pub(crate) use stretches::flanks;
+pub use synthesize::{Input, Lot, synthesize};
+
+use crate::library::{Donors, OpenLand};
+use crate::scoped::Scoped;
+
+/// The operation.
+pub struct Parcels;
+
+/// Parcels with less frontage have no street access, in metres.
+const ACCESS_M: f64 = 3.0;
+
+impl Operation for Parcels {
+    const CARD: Card = Card {
+        stage: "blocks",
+        method: "parcels",
+        summary: "cuts blocks into parcels that front on their streets",
+        source: "Aliaga, Vanegas, Benes 2008, section 3.1.2 [aliaga2008]",
+        needs_example: false,
+    };
+    type Params = Params;
+    type Learned = Learned;
+
+    fn learn(examples: &[Example], _: &Params, run: &Run) -> Result<Learned, Failure> {
+        learn::learn(examples, run)
+    }
+
+    fn edit(
+        city: &City,
+        scope: &Scope,
+        learned: &Learned,
+        params: &Params,
+        run: &Run,
+    ) -> Result<Edit, Failure> {
+        let failed =
+            |e: Error| Failure::City { operation: Self::CARD.name(), message: e.to_string() };
+        params.validate().map_err(failed)?;
+        let mut blocks = match city.blocks.is_empty() {
+            true => block::derive(&city.streets),
+            false => city.blocks.to_vec(),
+        };
+        if blocks.is_empty() {
+            return Err(failed(Error::NoBlocks));
+        }
+        let scoped = Scoped::of(city, &blocks, scope);
+        for block in blocks.iter_mut().filter(|b| scoped.holds(b.id)) {
+            block.pavement_m = params.pavement;
+        }
+        let open = OpenLand::of(city);
+        let donors = learned.donors(&blocks, run.seed());
+        let cut: Vec<Result<Option<CutBlock>, Failure>> = blocks
+            .par_iter()
+            .map(|block| {
+                run.check()?;
+                let inside = scoped.holds(block.id) && block.class == BlockClass::Block;
+                Ok(inside.then(|| cut_block(city, block, &donors, &open, params, run)))
+            })
+            .collect();
+        let cut: Vec<Option<CutBlock>> = cut.into_iter().collect::<Result<_, _>>()?;
+        Ok(written(city, blocks, cut, &scoped))
+    }
+}
+
+/// What becomes of one block.
+struct CutBlock {
+    lots: Vec<Lot>,
+    land_use: Option<Arc<str>>,
+    /// Use of the land that the rows leave.
+    rest_use: Option<Arc<str>>,
+    /// Is the open land new, and to be written as an area?
+    is_new_area: bool,
+    provenance: Provenance,
+}
+
+/// From this share of given open land on, a block stays open.
+const GIVEN_OPEN_SHARE: f64 = 0.5;
+
+fn cut_block(
+    city: &City,
+    block: &Block,
+    donors: &Donors<'_>,
+    open: &OpenLand,
+    params: &Params,
+    run: &Run,
+) -> CutBlock {
+    let donors = donors.of(block, &city.streets);
+    let donor = donors.first();
+    let provenance = Provenance {
+        origin: if donor.is_some() { Origin::Example } else { Origin::Procedural },
+        source: donor.map(|d| d.source.clone()),
+        part: donor.map(|d| format!("block {}", d.id).into()),
+    };
+    let given = open.share(&block.polygon).filter(|(_, s)| *s >= GIVEN_OPEN_SHARE);
+    let drawn = donor.and_then(|d| d.open.clone()).filter(|_| params.open_land);
+    let ground = block.buildable();
+    if let Some(land_use) = given.as_ref().map(|(class, _)| class.clone()).or(drawn) {
+        let lots = ground.into_iter().map(whole_lot).collect();
+        let (land_use, is_new_area) = (Some(land_use), given.is_none());
+        return CutBlock { lots, land_use, rest_use: None, is_new_area, provenance };
+    }
+    let input = learn::input(&donors, block.polygon.area_m2());
+    let key = rng::place_key(GridPoint::round(block.polygon.centroid()));
+    let mut rng = run.stream(key);
+    let lots = ground.iter().flat_map(|g| synthesize(g, &input, params, &mut rng)).collect();
+    let rest_use = donors.iter().find_map(|d| d.open.clone()).unwrap_or_else(|| "grass".into());
+    CutBlock { lots, land_use: None, rest_use: Some(rest_use), is_new_area: true, provenance }
+}
+
+fn whole_lot(polygon: exurb_geom::Polygon) -> Lot {
+    Lot { frontage_m: polygon.perimeter_m(), polygon, is_rest: false }
+}
+
+/// The edit: blocks with land use, parcels numbered in order, land use areas; what lies outside the
+/// scope stays.
+fn written(
+    city: &City,
+    mut blocks: Vec<Block>,
+    cut: Vec<Option<CutBlock>>,
+    scoped: &Scoped,
+) -> Edit {
+    let mut parcels: Vec<Parcel> =
+        city.parcels.iter().filter(|p| !scoped.holds(p.block)).cloned().collect();
+    let buildings = city.buildings.iter().filter(|b| !scoped.holds(b.block)).cloned().collect();
+    let mut land_use: Vec<Area> = city.land_use.to_vec();
+    let mut next_area = land_use.iter().map(|a| a.id).max().unwrap_or(0) + 1;
+    for (block, cut) in blocks.iter_mut().zip(cut) {
+        let Some(cut) = cut else { continue };
+        block.land_use.clone_from(&cut.land_use);
+        block.provenance.clone_from(&cut.provenance);
+        for lot in cut.lots {
+            let class = if lot.is_rest { &cut.rest_use } else { &cut.land_use };
+            if let Some(class) = class.as_ref().filter(|_| cut.is_new_area) {
+                let (polygon, class) = (lot.polygon.clone(), class.clone());
+                land_use.push(Area { id: next_area, polygon, class });
+                next_area += 1;
+            }
+            parcels.push(Parcel {
+                id: 0,
+                block: block.id,
+                street_access: lot.frontage_m >= ACCESS_M,
+                land_use: class.clone(),
+                polygon: lot.polygon,
+                provenance: cut.provenance.clone(),
+            });
+        }
+    }
+    parcels.sort_by_key(|p| p.block);
+    for (parcel, id) in parcels.iter_mut().zip(1..) {
+        parcel.id = id;
+    }
+    Edit {
+        blocks: Some(blocks),
+        parcels: Some(parcels),
+        buildings: Some(buildings),
+        land_use: Some(land_use),
+        ..Edit::default()
+    }
+}
