@@ -17,10 +17,8 @@ use crate::recognise::{Attributes, Kind, recognise};
 pub struct Gathering {
     /// Names the file or files in messages.
     pub file: String,
-    /// A short name for the city.
-    pub name: String,
-    /// Attributions the files give.
-    pub attribution: Vec<String>,
+    name: String,
+    attribution: Vec<String>,
     rows: Vec<(Kind, Geometry)>,
     placed: usize,
     placeless: Option<bool>,
@@ -30,6 +28,8 @@ pub struct Gathering {
     warnings: Vec<String>,
 }
 
+/// How OpenStreetMap's data are credited.
+const OSM_ATTRIBUTION: &str = "© OpenStreetMap contributors, ODbL 1.0";
 /// Data farther than this from their middle are strays, in degrees.
 const FARTHEST_DEG: f64 = 2.0;
 
@@ -58,6 +58,17 @@ impl Gathering {
                     .extend(geometry.into_parts().into_iter().map(|part| (kind.clone(), part)));
             }
             None => self.unknown += 1,
+        }
+    }
+
+    /// Adds attributions, one a line; what names OpenStreetMap gets its usual attribution.
+    pub fn credit(&mut self, text: &str) {
+        for line in text.lines().map(str::trim).filter(|line| !line.is_empty()) {
+            let is_osm = line.to_lowercase().contains("openstreetmap");
+            let line = if is_osm { OSM_ATTRIBUTION } else { line }.to_owned();
+            if !self.attribution.contains(&line) {
+                self.attribution.push(line);
+            }
         }
     }
 
@@ -108,7 +119,7 @@ impl Gathering {
     pub fn looks_like_metres(&mut self) -> bool {
         let degrees = |p: &mut Position| !(p[0].abs() > 180.0 || p[1].abs() > 90.0);
         let fresh = &mut self.rows[self.placed..];
-        let metres = fresh.iter_mut().filter(|(_, g)| !g.clone().all(|p| degrees(p))).count();
+        let metres = fresh.iter_mut().filter_map(|(_, g)| (!g.all(degrees)).then_some(())).count();
         metres * 2 > fresh.len()
     }
 

@@ -4,6 +4,7 @@ mod read;
 mod schema;
 mod write;
 
+pub(crate) use read::read_database;
 pub use read::read_geopackage;
 pub use write::write_geopackage;
 

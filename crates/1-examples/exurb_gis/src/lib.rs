@@ -3,7 +3,9 @@
 mod assembly;
 mod beside;
 mod error;
+pub mod fuzz;
 mod gathering;
+pub mod geojson;
 mod geometry;
 pub mod geopackage;
 mod layers;
@@ -16,4 +18,7 @@ mod value;
 mod wkb;
 
 pub use error::Error;
+pub use geojson::{
+    read_geojson, read_geojson_many, read_target, write_geojson, write_geojson_file,
+};
 pub use geopackage::{read_geopackage, write_geopackage};

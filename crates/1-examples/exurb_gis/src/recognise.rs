@@ -139,15 +139,15 @@ const THEMES: [(Theme, &[&str]); 8] = [
         &["water", "river", "lake", "stream", "hydro", "gewaesser", "gewässer", "coast"],
     ),
     (Theme::Trees, &["tree", "arbre", "baum", "bäume", "baeume"]),
-    (Theme::Lamps, &["lamp", "streetlight", "street_light"]),
-    (Theme::Streets, &["street", "road", "edges", "highway", "route", "strasse", "straße"]),
+    (Theme::Lamps, &["lamp", "roadlight", "road_light"]),
+    (Theme::Streets, &["road", "edges", "highway", "route", "strasse", "straße"]),
 ];
 
 impl Theme {
     fn of(name: &str) -> Self {
-        let name = name.to_lowercase();
+        // A street is no tree.
+        let name = name.to_lowercase().replace("street", "road");
         let fits = |words: &[&str]| words.iter().any(|word| name.contains(word));
-        // Lamps and trees along streets are named after both.
         THEMES.iter().find(|(_, words)| fits(words)).map_or(Self::Unknown, |(theme, _)| *theme)
     }
 }

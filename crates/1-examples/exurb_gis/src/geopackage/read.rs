@@ -168,7 +168,7 @@ fn read_layer(db: &Connection, layer: &ForeignLayer, into: &mut Gathering) -> Re
     let database = |source| Error::Database { file: file.clone(), source };
     let sql = format!("SELECT * FROM {}", quoted(&layer.table));
     let mut select = db.prepare(&sql).map_err(database)?;
-    let names: Vec<String> = select.column_names().into_iter().map(str::to_owned).collect();
+    let names: Vec<String> = select.column_names().map(str::to_owned).collect();
     let Some(at) = names.iter().position(|n| n.eq_ignore_ascii_case(&layer.geometry)) else {
         return Err(Error::Content {
             file: file.clone(),

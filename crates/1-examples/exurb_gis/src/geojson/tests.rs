@@ -1,0 +1,295 @@
+use std::path::{Path, PathBuf};
+
+use exurb_city::{City, FeatureShape, ImportOptions, Imported, Role};
+use exurb_geom::{Frame, GridPoint, LonLat, Polygon};
+use proptest::prelude::*;
+
+use super::{read_geojson_many, read_stream, read_target_stream, write_geojson};
+use crate::Error;
+use crate::sample::{self, any_city};
+
+fn written(city: &City) -> String {
+    let mut out = Vec::new();
+    write_geojson(city, &mut out).unwrap();
+    String::from_utf8(out).unwrap()
+}
+
+fn read(text: &str, name: &str) -> Result<Imported, Error> {
+    read_stream(text.as_bytes(), "test.geojson", name, &ImportOptions::default())
+}
+
+fn near(a: &[GridPoint], b: &[GridPoint]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(p, q)| p.distance_m(*q) < 0.02)
+}
+
+fn alike(a: &Polygon, b: &Polygon) -> bool {
+    a.rings().count() == b.rings().count() && a.rings().zip(b.rings()).all(|(r, s)| near(r, s))
+}
+
+/// The cities with everything but positions the same, and positions within 2 cm.
+fn assert_near(a: &City, b: &City) {
+    let (a, b) = (crate::numbered::numbered(a), crate::numbered::numbered(b));
+    assert_eq!((&a.frame, &a.metadata), (&b.frame, &b.metadata));
+    assert!(alike(&a.target, &b.target));
+    assert_eq!(a.streets.node_count(), b.streets.node_count());
+    for ((_, m), (_, n)) in a.streets.nodes().zip(b.streets.nodes()) {
+        assert_eq!(m.data, n.data);
+        assert!(near(&[m.at], &[n.at]));
+    }
+    assert_eq!(a.streets.edge_count(), b.streets.edge_count());
+    for ((_, e), (_, f)) in a.streets.edges().zip(b.streets.edges()) {
+        assert_eq!((e.from, e.to, &e.data), (f.from, f.to, &f.data));
+        assert!(near(e.line(), f.line()));
+    }
+    assert_eq!(a.other_ways.len(), b.other_ways.len());
+    for (v, w) in a.other_ways.iter().zip(b.other_ways.iter()) {
+        assert_eq!((v.id, &v.nodes, &v.street), (w.id, &w.nodes, &w.street));
+        assert!(near(&v.line, &w.line));
+    }
+    macro_rules! assert_layer {
+        ($($layer:ident),*) => {$(
+            assert_eq!(a.$layer.len(), b.$layer.len(), stringify!($layer));
+            for (x, y) in a.$layer.iter().zip(b.$layer.iter()) {
+                assert!(alike(&x.polygon, &y.polygon), "{x:?} {y:?}");
+                let mut x = x.clone();
+                x.polygon = y.polygon.clone();
+                assert_eq!(&x, y);
+            }
+        )*};
+    }
+    assert_layer!(blocks, parcels, buildings, water, land_use);
+    assert_eq!(a.features.len(), b.features.len());
+    for (x, y) in a.features.iter().zip(b.features.iter()) {
+        assert!(match (&x.shape, &y.shape) {
+            (FeatureShape::Point(p), FeatureShape::Point(q)) => near(&[*p], &[*q]),
+            (FeatureShape::Line(p), FeatureShape::Line(q)) => near(p, q),
+            (FeatureShape::Polygon(p), FeatureShape::Polygon(q)) => alike(p, q),
+            _ => false,
+        });
+        assert_eq!(
+            (x.id, &x.kind, x.block, &x.provenance),
+            (y.id, &y.kind, y.block, &y.provenance)
+        );
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn what_is_written_is_read_back(city in any_city()) {
+        let text = written(&city);
+        let imported = read(&text, "x").unwrap();
+        prop_assert_eq!(&imported.warnings, &Vec::<String>::new());
+        assert_near(&imported.city, &city);
+    }
+
+    #[test]
+    fn what_is_written_is_geojson_to_another_reader(city in any_city()) {
+        let geojson::GeoJson::FeatureCollection(collection) = written(&city).parse().unwrap() else {
+            panic!("a collection");
+        };
+        let rows = city.streets.edge_count() + city.streets.node_count() + city.other_ways.len()
+            + city.blocks.len() + city.parcels.len() + city.buildings.len() + city.features.len()
+            + city.water.len() + city.land_use.len() + 1;
+        prop_assert_eq!(collection.features.len(), rows);
+        for feature in &collection.features {
+            prop_assert!(feature.property("element").is_some_and(|e| e.is_string()));
+            if let Some(geojson::GeometryValue::Polygon { coordinates }) =
+                feature.geometry.as_ref().map(|g| &g.value)
+            {
+                for (i, ring) in coordinates.iter().enumerate() {
+                    prop_assert_eq!(ring.first(), ring.last());
+                    let area: f64 = ring.windows(2)
+                        .map(|w| (w[0][0] - ring[0][0]) * (w[1][1] - ring[0][1])
+                            - (w[1][0] - ring[0][0]) * (w[0][1] - ring[0][1]))
+                        .sum();
+                    // Nothing wraps around the world in a city of 4 km.
+                    let wraps = ring.iter().any(|p| (p[0] - ring[0][0]).abs() > 180.0);
+                    prop_assert!(wraps || (area > 0.0) == (i == 0), "outer rings turn left, holes right");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn features_speak_as_osm_does() {
+    let city = sample::grid_city(2);
+    let doc: serde_json::Value = serde_json::from_str(&written(&city)).unwrap();
+    let features = doc["features"].as_array().unwrap();
+    let first = |element: &str| {
+        features.iter().map(|f| &f["properties"]).find(|p| p["element"] == element).unwrap()
+    };
+    assert_eq!(first("street")["highway"], "residential");
+    assert!(first("street").get("bridge").is_none());
+    assert_eq!(
+        (&first("building")["building"], &first("building")["height"]),
+        (&"yes".into(), &7.3.into())
+    );
+    assert_eq!(features.iter().filter(|f| f["properties"]["element"] == "target").count(), 1);
+    let bbox: Vec<f64> =
+        doc["bbox"].as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect();
+    let corner = |x: f64, y: f64| city.frame.unproject(exurb_geom::Vec2::new(x, y));
+    let (sw, ne) = (corner(0.0, 0.0), corner(100.0, 100.0));
+    for (found, side) in bbox.iter().zip([sw.lon, sw.lat, ne.lon, ne.lat]) {
+        assert!((found - side).abs() < 1e-5, "{bbox:?}");
+    }
+}
+
+const LINE: &str = r#""type":"LineString","coordinates":[[14.40,50.10],[14.41,50.10]]"#;
+const CROSSING: &str =
+    r#""type":"LineString","coordinates":[[14.405,50.095],[14.405,50.105,212.0]]"#;
+
+#[test]
+fn every_outermost_object_is_understood() {
+    let files = [
+        format!(r#"{{"type":"GeometryCollection","geometries":[{{{LINE}}},{{{CROSSING}}}]}}"#),
+        format!(r#"{{"type":"Feature","geometry":{{"type":"GeometryCollection","geometries":[{{{LINE}}},{{{CROSSING}}}]}},"properties":null}}"#),
+        format!("{{{LINE}}}\n{{{CROSSING}}}\n"),
+        format!(r#"{{"geometry":{{{LINE}}},"type":"Feature"}}{{"type":"Feature","geometry":{{{CROSSING}}}}}"#),
+        format!("\u{feff}{{\"features\":[{{\"type\":\"Feature\",\"properties\":{{}},\"geometry\":{{{LINE}}}}},\
+            {{\"type\":\"Feature\",\"properties\":{{\"x\":[1,{{}}]}},\"geometry\":{{{CROSSING}}}}}],\"type\":\"FeatureCollection\"}}"),
+        r#"{"coordinates":[[[14.40,50.10],[14.41,50.10]],[[14.405,50.095],[14.405,50.105]]],"type":"MultiLineString"}"#.to_owned(),
+    ];
+    for text in files {
+        let city = read(&text, "map").unwrap_or_else(|e| panic!("{e}: {text}")).city;
+        assert_eq!(city.streets.edge_count(), 4, "{text}");
+        assert!(city.streets.edges().all(|(_, e)| e.data.role() == Role::Local));
+    }
+}
+
+#[test]
+fn coordinates_in_metres() {
+    let metres = |crs: &str| {
+        format!(
+            r#"{{"type":"FeatureCollection",{crs}"features":[{{"type":"Feature","properties":{{"highway":"primary"}},
+            "geometry":{{"type":"LineString","coordinates":[[459000,5550000],[459300,5550400]]}}}}]}}"#
+        )
+    };
+    let placeless = read(&metres(""), "map").unwrap();
+    assert_eq!(placeless.city.streets.length_m(), 500.0);
+    assert_eq!(placeless.city.frame.origin(), Frame::null_island().origin());
+    assert!(placeless.warnings[0].contains("null island"), "{:?}", placeless.warnings);
+
+    let crs = r#""crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::32633"}},"#;
+    let placed = read(&metres(crs), "map").unwrap().city;
+    assert!((placed.frame.origin().lat - 50.1).abs() < 0.1);
+    assert!((placed.streets.length_m() - 500.0).abs() < 0.3);
+
+    let crs = r#""crs":{"type":"name","properties":{"name":"town grid"}},"#;
+    let error = read(&metres(crs), "map").unwrap_err().to_string();
+    assert!(error.contains("town grid") && error.contains("reproject"), "{error}");
+}
+
+#[test]
+fn errors_say_what_is_wrong_and_where() {
+    for (text, word) in [
+        ("", "EOF"),
+        ("[1, 2]", "GeoJSON object"),
+        (r#"{"type":"FeatureCollection","features":[{"type":"Feat"#, "EOF"),
+        (r#"{"type":"FeatureCollection","features":[]}"#, "holds no streets"),
+        (r#"{"type":"LineString","coordinates":[[null,50],[14,51]]}"#, "holds no streets"),
+    ] {
+        let error = read(text, "map").unwrap_err().to_string();
+        assert!(error.contains(word) && error.contains("test.geojson"), "{text}: {error}");
+    }
+    let broken = written(&sample::grid_city(1))
+        .replace("\"class\":\"residential\"", "\"class\":\"cowpath\"");
+    let error = read(&broken, "map").unwrap_err().to_string();
+    assert!(error.contains("feature 2 (a streets)") || error.contains("cowpath"), "{error}");
+}
+
+fn target(text: &str, frame: Option<&Frame>) -> Result<(Frame, Polygon), String> {
+    read_target_stream(text.as_bytes(), "t.geojson", frame).map_err(|e| e.to_string())
+}
+
+#[test]
+fn targets_are_read_or_refused() {
+    let square = |w: f64| {
+        format!(
+            r#"{{"type":"Polygon","coordinates":[[[10,50],[{e},50],[{e},{n}],[10,{n}],[10,50]]]}}"#,
+            e = 10.0 + w,
+            n = 50.0 + w
+        )
+    };
+    let (frame, polygon) = target(&square(0.01), None).unwrap();
+    assert!((frame.origin().lon - 10.005).abs() < 1e-9);
+    assert!((polygon.area_m2() / (716.6 * 1112.4) - 1.0).abs() < 0.01, "{}", polygon.area_m2());
+
+    let elsewhere = Frame::new(LonLat { lon: 10.02, lat: 50.0 }).unwrap();
+    let (frame, moved) = target(&square(0.01), Some(&elsewhere)).unwrap();
+    assert_eq!(frame, elsewhere);
+    assert!(moved.bounds().max.x < -700.0);
+
+    let two = r#"{"type":"MultiPolygon","coordinates":[[[[0,0],[0.01,0],[0.01,0.01],[0,0]]],[[[1,0],[1.02,0],[1.02,0.02],[1,0]]]]}"#;
+    let (_, larger) = target(two, None).unwrap();
+    assert!((larger.area_m2() / 2.47e6 - 1.0).abs() < 0.02, "{}", larger.area_m2());
+
+    for (text, word) in [
+        (square(3.0), "larger than 10,000"),
+        (square(0.00001), "too little"),
+        (r#"{"type":"LineString","coordinates":[[0,0],[1,1]]}"#.to_owned(), "holds no polygon"),
+        (
+            r#"{"type":"Polygon","coordinates":[[[0,0],[0.1,0.1],[0.1,0],[0,0.09],[0,0]]]}"#
+                .to_owned(),
+            "crosses",
+        ),
+        (r#"{"type":"Polygon","coordinates":[]}"#.to_owned(), "area"),
+        (
+            r#"{"type":"Polygon","coordinates":[[[10,88],[10.1,88],[10.1,88.1],[10,88]]]}"#
+                .to_owned(),
+            "85",
+        ),
+    ] {
+        let error = target(&text, None).unwrap_err();
+        assert!(error.contains(word), "{error}");
+    }
+    let city = sample::grid_city(3);
+    let (_, own) = target(&written(&city), Some(&city.frame)).unwrap();
+    assert!(alike(&own, &city.target), "the target of a city file is its target");
+}
+
+fn shared(names: &[&str]) -> Option<Vec<PathBuf>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data/parcels");
+    if !folder.is_dir() {
+        println!("skipped: no shared data");
+        return None;
+    }
+    Some(names.iter().map(|name| folder.join(format!("{name}.geojson"))).collect())
+}
+
+#[test]
+fn a_french_suburb_in_four_files() {
+    let names =
+        ["parcels", "buildings", "roads", "zoning"].map(|n| format!("fr_besancon_thise_{n}"));
+    let Some(paths) = shared(&names.each_ref().map(String::as_str)) else { return };
+    let imported = read_geojson_many(&paths, &ImportOptions::default()).unwrap();
+    let city = imported.city;
+    assert!(city.parcels.len() >= 840, "{}", city.parcels.len());
+    assert!(city.buildings.len() >= 320, "{}", city.buildings.len());
+    let km = city.streets.length_m() / 1000.0;
+    assert!((10.0..23.0).contains(&km), "{km}");
+    assert!(city.streets.edges().any(|(_, e)| e.data.width_m > 0.0));
+    assert!(city.land_use.len() >= 25);
+}
+
+#[test]
+fn each_cadastral_file_alone() {
+    let counts = [
+        ("cz_prague_bubenec_plots", 407, 0, 0),
+        ("cz_prague_bubenec_buildings", 0, 144, 0),
+        ("cz_prague_bubenec_streets", 0, 0, 30),
+        ("fr_25354_village_parcels", 511, 0, 0),
+        ("fr_25354_village_buildings", 0, 252, 0),
+        ("fr_13029_village_parcels", 389, 0, 0),
+        ("fr_13029_village_buildings", 0, 239, 0),
+    ];
+    for (name, parcels, buildings, streets) in counts {
+        let Some(paths) = shared(&[name]) else { return };
+        let city = read_geojson_many(&paths, &ImportOptions::default()).unwrap().city;
+        assert!(city.parcels.len() >= parcels, "{name}: {}", city.parcels.len());
+        assert!(city.buildings.len() >= buildings, "{name}: {}", city.buildings.len());
+        assert!(city.streets.edge_count() >= streets, "{name}: {}", city.streets.edge_count());
+    }
+}
