@@ -154,9 +154,11 @@ impl Draft {
         Ok(target)
     }
 
-    /// The extent; where the file declares none, the box of the streets, or of whatever there is.
+    /// The extent; where the file declares none, the box of the streets, or of whatever there is,
+    /// with a margin of 10 m so that a single straight street has an area, too.
     pub fn area(&self) -> Option<Polygon> {
-        self.extent.clone().or_else(|| self.bounds().and_then(rectangle))
+        const MARGIN_M: f64 = 10.0;
+        self.extent.clone().or_else(|| self.bounds().and_then(|b| rectangle(b.grown(MARGIN_M))))
     }
 
     fn bounds(&self) -> Option<Bounds> {

@@ -80,6 +80,10 @@ fn usable(b: &Bounds) -> bool {
         && corners.iter().all(|(lon, lat)| LonLat { lon: *lon, lat: *lat }.is_valid())
 }
 
+fn overlap(a: &Bounds, b: &Bounds) -> bool {
+    a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]
+}
+
 /// The frame at the middle of the part asked for, of the declared extent, of the streets, or of
 /// whatever there is.
 fn frame(
@@ -90,7 +94,7 @@ fn frame(
 ) -> Result<Frame, exurb_geom::projection::FrameError> {
     let asked = options.bbox.map(|[sw, ne]| [sw.lon, sw.lat, ne.lon, ne.lat]);
     let bounds = asked
-        .filter(usable)
+        .filter(|asked| usable(asked) && extent.is_none_or(|extent| overlap(asked, &extent)))
         .or(extent)
         .or_else(|| street_bounds(elements))
         .or_else(|| {

@@ -1,7 +1,7 @@
 //! OpenStreetMap files both ways.
 //!
 //! [`read`] makes a city of OSM XML, PBF or Overpass JSON; [`write_xml()`] and [`write_pbf()`] write one.
-//! All formats go through one list of elements ([`elements`]); what follows is the same for all.
+//! All formats go through one list of elements; what follows is the same for all.
 //!
 //! | part | what it does |
 //! |---|---|
@@ -11,13 +11,17 @@
 //! | `streets`, `buildings`, `areas`, `features` | the meaning of tags |
 //! | `surfaces`, `coast` | everything that is no street; the sea |
 //! | `outline` | rings and polygons of ways and relations |
+//! | `document` | a city as nodes, ways and relations, for `write_xml` and `write_pbf` |
+//! | [`fuzz`] | bodies of the fuzz targets |
 
 mod areas;
 mod buildings;
 mod coast;
+mod document;
 mod elements;
 mod error;
 mod features;
+pub mod fuzz;
 mod import;
 mod outline;
 mod pbf_format;
@@ -29,6 +33,8 @@ mod read_xml;
 mod streets;
 mod surfaces;
 mod tags;
+mod write_pbf;
+mod write_xml;
 
 /// How files written here begin to say who wrote them.
 const GENERATOR: &str = "exurb";
@@ -36,3 +42,5 @@ const GENERATOR: &str = "exurb";
 pub use error::Error;
 pub use import::ATTRIBUTION;
 pub use read::{Format, read, read_bytes};
+pub use write_pbf::write_pbf;
+pub use write_xml::write_xml;
