@@ -83,7 +83,7 @@ fn mistakes_are_named_with_their_line() {
         ),
         ("weight = 2.5", "weight = -1", "r.toml: `weight` of other is -1"),
         ("part = \"west\"", "part = \"top\"", "r.toml, line 16: unknown variant `top`"),
-        ("view = ", "wiev = ", "r.toml, line 38: unknown field `wiev`"),
+        ("view = ", "wiev = ", "r.toml, line 37: unknown field `wiev`"),
         ("[target]", "[target", "r.toml, line 5: "),
         ("file = \"b.gpkg\"\n", "", "r.toml, line 11: missing field `file`"),
     ] {

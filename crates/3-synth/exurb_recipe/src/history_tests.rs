@@ -21,7 +21,7 @@ fn make(recipe: &Recipe, city: Option<City>) -> City {
     let city = city.unwrap_or_else(|| {
         let first = examples.first().map(|e| &*e.city);
         let target = recipe.target.clone().unwrap_or(Target::Size(Size::default()));
-        crate::target::begin(&target, first, Path::new(""), &Run::new(1)).unwrap()
+        crate::target::begin(&target, first, Path::new("")).unwrap()
     });
     let inputs = Inputs { city, examples, read_seconds: 0.0 };
     let run = Run::new(recipe.seed);

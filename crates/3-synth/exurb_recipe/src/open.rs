@@ -15,17 +15,23 @@ pub fn open_city(path: &Path, options: &ImportOptions) -> Result<Imported, Error
     if let Some(name) = builtin::name_of(path) {
         return builtin::open(name, options);
     }
-    let format = format::detect(path, &head(path)?).ok_or_else(|| {
-        Error::Input(format!(
-            "{}: no format that can be read; there are {READABLE}",
-            path.display()
-        ))
-    })?;
+    let format = format_of(path)?;
     let wrong = |message: String| Error::Input(named(path, &message));
     match format {
         Format::Osm => exurb_osm::read(path, options).map_err(|e| wrong(e.to_string())),
-        Format::GeoJson | Format::GeoPackage => Err(wrong("LATER".to_owned())),
+        Format::GeoJson => exurb_gis::read_geojson(path, options).map_err(|e| wrong(e.to_string())),
+        Format::GeoPackage => {
+            exurb_gis::read_geopackage(path, options).map_err(|e| wrong(e.to_string()))
+        }
     }
+}
+
+/// The format of a file that is there.
+pub fn format_of(path: &Path) -> Result<Format, Error> {
+    format::detect(path, &head(path)?).ok_or_else(|| {
+        let path = path.display();
+        Error::Input(format!("{path}: no format that can be read; there are {READABLE}"))
+    })
 }
 
 /// Where a file is: beside the recipe, else in the current folder.
@@ -58,7 +64,7 @@ fn head(path: &Path) -> Result<Vec<u8>, Error> {
 }
 
 /// The message with the file's name in front, unless it is there already.
-fn named(path: &Path, message: &str) -> String {
+pub fn named(path: &Path, message: &str) -> String {
     let path = path.display().to_string();
     if message.contains(&path) { message.to_owned() } else { format!("{path}: {message}") }
 }

@@ -10,7 +10,7 @@ pub struct Registry {
 impl Registry {
     /// Every operation of this program, by stage and method.
     pub fn all() -> Self {
-        let stages = [exurb_streets::operations()];
+        let stages = [exurb_streets::operations(), exurb_blocks::operations()];
         Self::new(stages.into_iter().flatten().collect())
     }
 

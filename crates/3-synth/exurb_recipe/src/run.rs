@@ -82,7 +82,7 @@ impl Recipe {
             ))),
             (None, _) => {
                 let target = self.target.clone().unwrap_or(Target::Size(Default::default()));
-                target::begin(&target, examples.first().map(|e| &*e.city), folder, run)
+                target::begin(&target, examples.first().map(|e| &*e.city), folder)
             }
         }
     }

@@ -24,7 +24,12 @@ impl Size {
                 "a target of {width_m} m x {height_m} m is too small: at least 10 m a side"
             ));
         }
-        check_area_km2(width_m * height_m / 1e6)?;
+        let area_km2 = width_m * height_m / 1e6;
+        if area_km2 > MOST_AREA_KM2 {
+            return Err(format!(
+                "a target of {area_km2:.0} km² is too large: at most 10,000 km²; make several"
+            ));
+        }
         Ok(Self { width_m, height_m })
     }
 
@@ -37,14 +42,6 @@ impl Size {
     pub fn height_m(self) -> f64 {
         self.height_m
     }
-}
-
-/// Refuses areas over [`MOST_AREA_KM2`].
-pub fn check_area_km2(area_km2: f64) -> Result<(), String> {
-    if area_km2 <= MOST_AREA_KM2 {
-        return Ok(());
-    }
-    Err(format!("a target of {area_km2:.0} km² is too large: at most 10,000 km²; make several"))
 }
 
 impl Default for Size {

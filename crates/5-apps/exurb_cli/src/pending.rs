@@ -1,6 +1,7 @@
 //! Files that appear whole or not at all: written beside their place, then renamed.
 
-use std::fs;
+use std::fs::{self, File};
+use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use crate::problem::Problem;
@@ -30,6 +31,16 @@ impl Pending {
         Ok(Self { path: path.to_owned(), beside })
     }
 
+    /// The file's place.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The file's name without its ending and without blanks, for the files that go with it.
+    pub fn stem(&self) -> String {
+        self.path.file_stem().unwrap_or_default().to_string_lossy().replace(' ', "_")
+    }
+
     /// Where to write: beside the place, with the same ending.
     pub fn beside(&self) -> &Path {
         &self.beside
@@ -37,7 +48,20 @@ impl Pending {
 
     /// Writes bytes.
     pub fn write(&self, bytes: &[u8]) -> Result<(), Problem> {
-        fs::write(&self.beside, bytes).map_err(|e| self.problem(&e.to_string()))
+        self.stream(|out| out.write_all(bytes))
+    }
+
+    /// Writes what `write` puts into a stream.
+    pub fn stream(
+        &self,
+        write: impl FnOnce(&mut BufWriter<File>) -> std::io::Result<()>,
+    ) -> Result<(), Problem> {
+        let whole = || {
+            let mut out = BufWriter::new(File::create(&self.beside)?);
+            write(&mut out)?;
+            out.flush()
+        };
+        whole().map_err(|e| self.problem(&e.to_string()))
     }
 
     /// What a writer reports, under the file's own name.

@@ -45,5 +45,5 @@ pub fn run(matches: &ArgMatches) -> Result<(), Problem> {
         let write = Outputs::prepare(&[export], Path::new(""))?.write(&city, run)?;
         Ok((city, Seconds { read, write, ..Seconds::default() }))
     })?;
-    summary::report(&city, None, Some(seconds), &[&options.output.output], &options.run)
+    summary::report(&city, None, seconds, &[&options.output.output], &options.run)
 }

@@ -3,11 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use clap::{ArgMatches, Args, Command, FromArgMatches};
+use exurb_city::City;
+use exurb_measure::Info;
+use exurb_operation::Run;
 use exurb_recipe::Source;
+use serde_json::json;
 
 use crate::options::{PartOptions, RunOptions};
 use crate::problem::Problem;
-use crate::{job, report, summary};
+use crate::{job, report};
 
 #[derive(Args)]
 struct Options {
@@ -34,32 +38,28 @@ pub fn command() -> Command {
 /// Runs it.
 pub fn run(matches: &ArgMatches) -> Result<(), Problem> {
     let options = Options::from_arg_matches(matches).map_err(|e| Problem::usage(e.to_string()))?;
-    let folder = Path::new("");
-    let (city, info) = job::work(&options.run, 1, |run| {
-        let city = exurb_recipe::read_source(
-            &options.part.apply(Source::new(&options.city)),
-            folder,
-            run,
-        )?;
-        let example = options
-            .example
-            .as_ref()
-            .map(|file| exurb_recipe::read_source(&Source::new(file), folder, run));
+    let read = |source: &Source, run: &Run| exurb_recipe::read_source(source, Path::new(""), run);
+    let text = job::work(&options.run, 1, |run| {
+        let city = read(&options.part.apply(Source::new(&options.city)), run)?;
+        if options.recipe {
+            return recipe(&city, &options);
+        }
+        let example = options.example.as_ref().map(|file| read(&Source::new(file), run));
         let example = example.transpose()?;
         run.phase("measuring");
-        let info =
-            if options.recipe { None } else { Some(summary::info(&city, example.as_ref())?) };
+        let info = Info::of(&city, example.as_ref());
         run.check()?;
-        Ok((city, info))
+        Ok(if options.run.json { format!("{:#}", json!(info)) } else { info.to_text() })
     })?;
-    match info {
-        None if city.metadata.recipe.is_empty() => {
-            let message =
-                format!("{} holds no recipe: no exurb method made it", options.city.display());
-            Err(Problem::failed(message))
-        }
-        None => report::result(&city.metadata.recipe),
-        Some(info) if options.run.json => report::json(&info),
-        Some(info) => report::result(&summary::text(&info)),
+    report::result(&text)
+}
+
+fn recipe(city: &City, options: &Options) -> Result<String, Problem> {
+    match &city.metadata.recipe {
+        none if none.is_empty() => Err(Problem::failed(format!(
+            "{} holds no recipe: it was imported, not made by exurb",
+            options.city.display()
+        ))),
+        recipe => Ok(recipe.clone()),
     }
 }

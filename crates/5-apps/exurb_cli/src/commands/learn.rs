@@ -3,7 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use clap::{ArgMatches, Args, Command, FromArgMatches};
+use exurb_city::{City, Role};
+use exurb_measure::{Info, street_statistics};
 use exurb_recipe::Source;
+use serde_json::{Value, json};
 
 use crate::options::{PartOptions, RunOptions};
 use crate::pending::Pending;
@@ -37,20 +40,28 @@ pub fn run(matches: &ArgMatches) -> Result<(), Problem> {
         let pending = options.output.as_deref().map(Pending::new).transpose()?;
         let city = exurb_recipe::read_source(&source, Path::new(""), run)?;
         run.phase("measuring");
-        let lesson = summary::info(&city, None)?;
+        let lesson = lesson(&city);
         run.check()?;
-        match pending {
-            None => Ok(Some(lesson)),
-            Some(pending) => {
-                pending.write(format!("{lesson:#}\n").as_bytes())?;
-                pending.commit()?;
-                Ok(None)
-            }
+        if let Some(pending) = pending {
+            pending.write(format!("{lesson:#}\n").as_bytes())?;
+            pending.commit()?;
         }
+        Ok(lesson)
     })?;
-    match (lesson, &options.output) {
-        (Some(lesson), _) => report::json(&lesson),
-        (None, Some(file)) => summary::written(&[file], &options.run),
-        (None, None) => Ok(()),
+    match &options.output {
+        Some(file) if !options.run.json => summary::written(&[file], &options.run),
+        _ => report::json(&lesson),
     }
+}
+
+/// Length and curvature of streets by role, and all that `exurb info` tells.
+fn lesson(city: &City) -> Value {
+    let streets = |role| street_statistics(&city.streets, role);
+    json!({
+        "name": &*city.metadata.name,
+        "attribution": city.metadata.attribution,
+        "buildings_complete": city.metadata.buildings_complete,
+        "streets": {"main": streets(Role::Main), "local": streets(Role::Local)},
+        "info": Info::of(city, None),
+    })
 }

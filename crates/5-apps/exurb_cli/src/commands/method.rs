@@ -102,7 +102,7 @@ pub fn run(stage: &str, matches: &ArgMatches, registry: &Registry) -> Result<(),
         Ok((made, example))
     })?;
     let files: Vec<&PathBuf> = exports.iter().map(|e| &e.file).collect();
-    summary::report(&made.city, example.as_deref(), Some(made.seconds), &files, &options)
+    summary::report(&made.city, example.as_deref(), made.seconds, &files, &options)
 }
 
 /// The recipe of one step that the arguments ask for.

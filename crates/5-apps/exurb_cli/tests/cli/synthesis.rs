@@ -96,3 +96,72 @@ fn too_little_memory_stops_the_work() {
     exurb(folder.path(), &args.split(' ').collect::<Vec<_>>()).ends(1).says("--max-memory");
     assert!(listing(folder.path()).is_empty());
 }
+
+#[test]
+fn a_target_elsewhere_on_earth_is_filled_there() {
+    let folder = tempdir().unwrap();
+    let area = r#"{"type":"Polygon","coordinates":[[[139.70,35.60],[139.71,35.60],[139.705,35.61],[139.70,35.60]]]}"#;
+    fs::write(folder.path().join("area.geojson"), area).unwrap();
+    let args = "streets grow -e builtin:helsinki --target area.geojson -o c.geojson --json";
+    let report = exurb(folder.path(), &args.split(' ').collect::<Vec<_>>()).ends(0).json();
+    let km2 = report["area_km2"].as_f64().unwrap();
+    assert!((km2 - 0.502).abs() < 0.01, "{km2}");
+    let text = fs::read_to_string(folder.path().join("c.geojson")).unwrap();
+    let city: Value = serde_json::from_str(&text).unwrap();
+    let side = |i: usize| city["bbox"][i].as_f64().unwrap();
+    assert!(139.70 <= side(0) && 35.60 <= side(1) && side(2) <= 139.71 && side(3) <= 35.61);
+    // The city that was made is a target, too.
+    let args = "streets grow -e builtin:grid --target c.geojson -o d.gpkg --json";
+    let again = exurb(folder.path(), &args.split(' ').collect::<Vec<_>>()).ends(0).json();
+    let difference = again["area_km2"].as_f64().unwrap() - km2;
+    assert!(difference.abs() < 0.001, "{difference}");
+}
+
+#[test]
+fn targets_that_are_no_area_are_refused() {
+    let folder = tempdir().unwrap();
+    for (name, area) in [
+        ("empty", r#"{"type":"FeatureCollection","features":[]}"#),
+        ("line", r#"{"type":"LineString","coordinates":[[1,1],[2,2]]}"#),
+        ("flat", r#"{"type":"Polygon","coordinates":[[[1,1],[1.001,1],[1,1]]]}"#),
+        (
+            "bow",
+            r#"{"type":"Polygon","coordinates":[[[1,1],[1.01,1.01],[1.01,1],[1,1.01],[1,1]]]}"#,
+        ),
+        ("huge", r#"{"type":"Polygon","coordinates":[[[1,1],[5,1],[5,5],[1,5],[1,1]]]}"#),
+        ("nowhere", r#"{"type":"Polygon","coordinates":[[[null,1],[5,1],[5,5],[1,1]]]}"#),
+    ] {
+        let file = format!("{name}.geojson");
+        fs::write(folder.path().join(&file), area).unwrap();
+        let args = ["streets", "grow", "-e", "builtin:grid", "-o", "c.gpkg", "--target", &file];
+        exurb(folder.path(), &args).ends(2).says(&file);
+    }
+    assert!(!folder.path().join("c.gpkg").exists());
+}
+
+#[test]
+fn an_interrupt_ends_the_work_cleanly() {
+    if !cfg!(unix) {
+        println!("skipped: no interrupts to send on this system");
+        return;
+    }
+    let folder = tempdir().unwrap();
+    let args = "streets grow -e builtin:helsinki --size 60000 -o c.gpkg";
+    let child = std::process::Command::new(env!("CARGO_BIN_EXE_exurb"))
+        .args(args.split(' '))
+        .current_dir(folder.path())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    // The work has begun when the file under way is there.
+    while listing(folder.path()).is_empty() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    let id = child.id().to_string();
+    std::process::Command::new("kill").args(["-INT", &id]).status().unwrap();
+    let ended = child.wait_with_output().unwrap();
+    let message = String::from_utf8(ended.stderr).unwrap();
+    assert_eq!(ended.status.code(), Some(1), "{message}");
+    assert!(message.contains("stopped; nothing was written"), "{message}");
+    assert!(listing(folder.path()).is_empty());
+}
