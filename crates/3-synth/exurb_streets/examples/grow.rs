@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use exurb_city::{City, ImportOptions, street_graph};
 use exurb_geom::{GridPoint, Polygon};
-use exurb_operation::{AnyOperation, Example, Run, Scope, erase};
+use exurb_operation::{Example, Run, Scope, erase};
 
 fn main() {
     let args: Vec<String> = std::env::args().skip(1).collect();
@@ -35,6 +35,24 @@ fn main() {
         outcome.seconds.synthesise,
         km / (outcome.seconds.learn + outcome.seconds.synthesise),
     );
+    let report = exurb_city::laws::laws(&outcome.city);
+    for law in report.laws.iter().filter(|l| !l.pass) {
+        let first = report.breaches.iter().find(|b| b.law == law.name);
+        println!("   LAW {} {:?} > {} ({}) {first:?}", law.name, law.value, law.limit, law.count);
+    }
+    let values = exurb_city::laws::gates(&outcome.city);
+    let example = &outcome.city.metadata.example_gates;
+    for (name, gate) in exurb_city::laws::compare_gates(&values, Some(example)) {
+        if gate.pass == Some(false) {
+            println!(
+                "   gate {name} {:?} not in {:?}..{:?}",
+                gate.value, gate.limit_min, gate.limit
+            );
+        }
+    }
+    if args[1] == "-" {
+        return;
+    }
     let style =
         exurb_plan::Style::parse(&std::env::var("STYLE").unwrap_or("figure".into())).unwrap();
     let options = exurb_plan::Options { width_px: 1000, style, ..Default::default() };

@@ -17,7 +17,7 @@ use rand::RngExt;
 use super::error::Error;
 use super::layer::{ChainEnd, NodeKind};
 use super::learn::{Style, Vocabulary};
-use super::network::{Network, Piece, Vertex, Wish};
+use super::network::{Landing, Network, Piece, Vertex, Wish};
 use super::params::Params;
 use super::{drawing, placing, procedural};
 
@@ -38,6 +38,15 @@ pub struct Growth<'a> {
     /// Places to grow on.
     pub queue: VecDeque<Place>,
     batch: u32,
+}
+
+/// A line that was laid.
+#[derive(Clone, Copy, Debug)]
+pub struct Laid {
+    /// Its last node.
+    pub to: NodeId,
+    /// Did it come to its own end, a new node in the open?
+    pub is_whole: bool,
 }
 
 /// A place to grow on.
@@ -176,7 +185,7 @@ impl<'a> Growth<'a> {
 
     /// Lays a line from `node` if it may be, ending wherever it must. Nodes of the other layer at
     /// `via` (points of the line, nodes of the example) become nodes of the network too, as far as
-    /// the line got. Returns the last node and how much of the line was laid.
+    /// the line got.
     pub fn lay(
         &mut self,
         node: NodeId,
@@ -185,9 +194,12 @@ impl<'a> Growth<'a> {
         piece: Piece,
         vertex: Vertex,
         via: &[(usize, NodeId)],
-    ) -> Option<(NodeId, f64)> {
+    ) -> Option<Laid> {
+        if self.leaves_cell(node, line) {
+            return None;
+        }
         let probe = self.net.probe(node, line, wish)?;
-        let kept = probe.kept;
+        let is_whole = probe.landing == Landing::Free && probe.kept > 0.999;
         let landed = polyline::length(&probe.line);
         let whole = probe.line.len() == line.len();
         let stops: Vec<(Vec2, NodeId)> = via
@@ -209,7 +221,15 @@ impl<'a> Growth<'a> {
                 edge = exurb_graph::EdgeId(self.net.graph.edge_bound() as u32 - 1);
             }
         }
-        Some((to, kept))
+        Some(Laid { to, is_whole })
+    }
+
+    /// Does a line from a node of the cell's border begin outside the cell, where the cell sees no
+    /// streets?
+    fn leaves_cell(&self, node: NodeId, line: &[Vec2]) -> bool {
+        let on_border =
+            self.net.graph.darts(node).iter().any(|d| self.net.graph.edge(d.edge()).data.fixed);
+        on_border && !self.area.contains(GridPoint::round(polyline::point_at(line, 0.5)))
     }
 
     /// Is a free place there: nothing in the way on the first metres of this direction?

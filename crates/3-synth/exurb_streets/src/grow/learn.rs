@@ -156,7 +156,7 @@ pub fn learn(city: &City, params: &Params) -> Result<Vocabulary, Error> {
     if main.patches.is_empty() && local.patches.is_empty() {
         return Err(Error::NoPatch(name.to_string()));
     }
-    let gates = BTreeMap::new();
+    let gates = exurb_city::laws::gates(city);
     Ok(Vocabulary { center: center_of(&graph), name, main, local, gates })
 }
 

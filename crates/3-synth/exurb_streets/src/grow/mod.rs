@@ -36,6 +36,9 @@ mod synthesize;
 #[cfg(test)]
 mod tests;
 
+use std::sync::Arc;
+
+use exurb_city::street_graph::{self, StreetGraph};
 use exurb_city::{City, Edit, block};
 use exurb_geom::{GridPoint, LonLat, Polygon, Vec2};
 use exurb_operation::{Card, Example, Failure, Operation, Run, Scope};
@@ -91,6 +94,7 @@ impl Operation for Grow {
         let starts = starts(city, target, learned, params).map_err(failure)?;
         let input = Input { target, examples: &learned.vocabularies, starts };
         let streets = synthesize(&input, params, run).map_err(failure)?;
+        let streets = lawful(city, target, streets, run);
         run.phase("blocks");
         let blocks = block::derive(&streets);
         let gates = learned.vocabularies.first().map(|v| v.gates.clone());
@@ -101,6 +105,41 @@ impl Operation for Grow {
             ..Edit::default()
         })
     }
+}
+
+/// The streets without those that break a law of the city model. Growth lays none; what the target's
+/// edge cuts off and turns outwards can meet by a hair.
+fn lawful(city: &City, target: &Polygon, streets: StreetGraph, run: &Run) -> StreetGraph {
+    const LAWS: [&str; 4] = [
+        "crossings_without_node",
+        "touching_vertices",
+        "self_intersecting",
+        "duplicate_length_share",
+    ];
+    let mut checked = City::empty(city.frame.clone(), target.clone());
+    checked.streets = Arc::new(streets);
+    for _ in 0..4 {
+        let report = exurb_city::laws::laws(&checked);
+        let mut broken: Vec<u32> =
+            report.breaches.iter().filter(|b| LAWS.contains(&b.law)).map(|b| b.id - 1).collect();
+        broken.sort_unstable();
+        broken.dedup();
+        if broken.is_empty() {
+            break;
+        }
+        run.warn(format!(
+            "{} streets were removed because they met others too closely",
+            broken.len()
+        ));
+        let mut graph = (*checked.streets).clone();
+        for id in broken {
+            graph.remove_edge(exurb_graph::EdgeId(id));
+        }
+        graph.remove_isolated_nodes();
+        street_graph::dissolve_all(&mut graph);
+        checked.streets = Arc::new(graph.compacted());
+    }
+    Arc::unwrap_or_clone(checked.streets)
 }
 
 /// Where growth begins: as told, else spread over the target, the first in its middle.

@@ -90,12 +90,14 @@ pub struct Wish {
     pub to: Option<NodeId>,
     /// The smallest angle to other streets at both ends.
     pub least_angle_rad: f64,
+    /// It ends in the open: where it would meet a street it is cut short of it.
+    pub dead_end: bool,
 }
 
 impl Wish {
     /// A line of that batch that may be cut short.
     pub fn free(batch: u32) -> Self {
-        Self { batch, to: None, least_angle_rad: LEAST_ANGLE_RAD }
+        Self { batch, to: None, least_angle_rad: LEAST_ANGLE_RAD, dead_end: false }
     }
 }
 
@@ -193,6 +195,7 @@ impl Network {
                 }
                 (line.to_vec(), Landing::Node(to))
             }
+            None if wish.dead_end => (self.stop_short(from, line)?, Landing::Free),
             None => self.land(from, line)?,
         };
         let length = polyline::length(&line);
@@ -300,6 +303,27 @@ impl Network {
         let ahead = polyline::point_at(&e, along + 10.0) - polyline::point_at(&e, along);
         let behind = polyline::point_at(&e, along - 10.0) - polyline::point_at(&e, along);
         [ahead, behind].iter().all(|u| trig::angle_between(*u, d) >= least_rad)
+    }
+
+    /// The part of `line` that keeps off other streets at its end, if enough is left of it.
+    fn stop_short(&self, from: NodeId, line: &[Vec2]) -> Option<Vec<Vec2>> {
+        let total = polyline::length(line);
+        let mut end = self.first_contact(from, None, line).map_or(total, |c| c.along_m - JOIN_M);
+        let touches = |e: EdgeId| {
+            let edge = self.graph.edge(e);
+            edge.from == from || edge.to == from
+        };
+        for _ in 0..4 {
+            if end < 2.0 * SHORTEST_M {
+                return None;
+            }
+            let tip = polyline::point_at(line, end);
+            match self.edge_near(tip, JOIN_M) {
+                Some((edge, _)) if !touches(edge) => end -= JOIN_M / 2.0,
+                _ => return Some(polyline::part(line, 0.0, end)),
+            }
+        }
+        None
     }
 
     /// Follows `line` to its first contact, or to its end, and bends it onto what is near there.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use exurb_geom::{GridPoint, Vec2};
 use exurb_graph::NodeId;
 
-use super::growth::Growth;
+use super::growth::{Growth, Laid};
 use super::layer::ChainEnd;
 use super::network::{JOIN_M, Landing, Probe, Wish};
 
@@ -45,11 +45,12 @@ pub fn branch(growth: &mut Growth, node: NodeId, end: ChainEnd) {
     };
     let batch = growth.next_batch();
     let piece = growth.copied(&style.layer.chains[end.chain].street, start, &part, batch);
-    let wish = Wish { least_angle_rad: PATCH_ANGLE_RAD, ..Wish::free(batch) };
-    if let Some((tip, kept)) = growth.lay(node, &line, wish, piece, vertex, &[])
-        && kept > 0.999
+    let dead_end = vertex.dead_end;
+    let wish = Wish { least_angle_rad: PATCH_ANGLE_RAD, dead_end, ..Wish::free(batch) };
+    if let Some(laid) = growth.lay(node, &line, wish, piece, vertex, &[])
+        && laid.is_whole
     {
-        growth.enqueue(tip);
+        growth.enqueue(laid.to);
     }
 }
 
@@ -100,10 +101,10 @@ pub fn place(growth: &mut Growth, node: NodeId, patch: usize, root: usize) -> bo
         }
         let far = layer.head(end);
         let vertex = growth.copy_of(far, start);
-        let is_dead_end = vertex.dead_end;
         let piece = growth.copied(&layer.chains[end.chain].street, start, &patch.label, batch);
         let via = layer.via(end);
-        let wish = Wish { least_angle_rad: PATCH_ANGLE_RAD, ..Wish::free(batch) };
+        let dead_end = vertex.dead_end;
+        let wish = Wish { least_angle_rad: PATCH_ANGLE_RAD, dead_end, ..Wish::free(batch) };
         let exists = growth.net.node_near(line[line.len() - 1], SAME_M, Some(from));
         let wish = if exists.is_some() { Wish { to: exists, ..wish } } else { wish };
         let result =
@@ -111,10 +112,10 @@ pub fn place(growth: &mut Growth, node: NodeId, patch: usize, root: usize) -> bo
                 exists?;
                 growth.lay(from, &line, Wish { to: None, ..wish }, piece, vertex, &via)
             });
-        if let Some((tip, kept)) = result {
+        if let Some(line) = result {
             laid = true;
-            if kept > 0.999 && !is_dead_end && Some(tip) != exists {
-                growth.enqueue(tip);
+            if line.is_whole {
+                growth.enqueue(line.to);
             }
         }
     }
@@ -160,7 +161,7 @@ fn lay_inner(
         }
         let piece = growth.copied(&layer.chains[chain].street, start, &patch.label, batch);
         let vertex = growth.copy_of(head, start);
-        let wish = Wish { batch, to, least_angle_rad: 0.2 };
+        let wish = Wish { to, least_angle_rad: 0.2, ..Wish::free(batch) };
         let probe = match to {
             Some(_) => growth.net.probe(from, &line, wish),
             // It must arrive where it wants to.
@@ -172,7 +173,7 @@ fn lay_inner(
         let edges = growth.net.graph.edge_bound();
         let via = layer.via(end);
         match probe.and_then(|_| growth.lay(from, &line, wish, piece, vertex, &via)) {
-            Some((tip, _)) => {
+            Some(Laid { to: tip, .. }) => {
                 laid = true;
                 nodes.insert(head, Some(tip));
                 undo.extend(

@@ -1,5 +1,7 @@
 //! The example as growth wants it: what can be copied without breaking a law.
 
+use std::collections::BTreeSet;
+
 use exurb_city::street_graph::{self, StreetGraph};
 use exurb_city::{Junction, Role, Street, block};
 use exurb_geom::{Bounds, GridPoint, SegmentIndex, grid};
@@ -23,7 +25,23 @@ pub fn learnable(streets: &StreetGraph) -> StreetGraph {
     collapse_short(&mut graph);
     straighten_loops(&mut graph);
     street_graph::dissolve_all(&mut graph);
+    mark_severed(&mut graph, streets);
     graph.compacted()
+}
+
+/// Marks ends where a street went on that is not learned, such as a motorway or a tunnel: they are no
+/// dead ends of the example.
+fn mark_severed(graph: &mut StreetGraph, whole: &StreetGraph) {
+    let junctions: BTreeSet<GridPoint> =
+        whole.nodes().filter(|(id, _)| whole.degree(*id) > 1).map(|(_, n)| n.at).collect();
+    let severed: Vec<NodeId> = graph
+        .nodes()
+        .filter(|(id, n)| graph.degree(*id) == 1 && junctions.contains(&n.at))
+        .map(|(id, _)| id)
+        .collect();
+    for node in severed {
+        graph.node_mut(node).data.cut = true;
+    }
 }
 
 /// Collapses short edges one by one, as long as no collapse makes streets cross.

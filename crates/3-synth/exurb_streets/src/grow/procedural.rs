@@ -80,7 +80,7 @@ fn lands_ahead(
         let Some(probe) = growth.net.probe(node, &line, Wish::free(0)) else { continue };
         if matches!(probe.landing, Landing::Edge(..) | Landing::Node(_)) {
             let piece = growth.made(street, Origin::Joined);
-            return growth.net.commit(node, probe, piece, Vertex::default()).is_some();
+            return growth.lay(node, &line, Wish::free(0), piece, Vertex::default(), &[]).is_some();
         }
     }
     false
@@ -126,10 +126,10 @@ pub fn step(growth: &mut Growth, node: NodeId, direction: Vec2) {
     let street = street_like(growth, node);
     let piece = growth.made(&street, Origin::Procedural);
     let tip = Vertex { start, ..Vertex::default() };
-    if let Some((end, kept)) = growth.lay(node, &line, Wish::free(0), piece, tip, &[])
-        && kept > 0.999
+    if let Some(laid) = growth.lay(node, &line, Wish::free(0), piece, tip, &[])
+        && laid.is_whole
     {
-        growth.enqueue(end);
+        growth.enqueue(laid.to);
     }
 }
 

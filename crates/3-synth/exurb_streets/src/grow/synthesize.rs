@@ -62,7 +62,8 @@ pub fn synthesize(input: &Input, params: &Params, run: &Run) -> Result<StreetGra
 
     run.phase("finish");
     let graph = join(main, local);
-    let streets = finish::finish(graph, input.target, params.remove_dangling);
+    let share = examples.first().and_then(|e| e.gates.get("dead_end_share")).copied();
+    let streets = finish::finish(graph, input.target, share, params.remove_dangling);
     if streets.edge_count() == 0 {
         let area_km2 = input.target.area_m2() / 1e6;
         return Err(Error::Nothing { starts: input.starts.len(), area_km2 });
