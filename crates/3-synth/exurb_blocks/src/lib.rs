@@ -3,10 +3,12 @@
 //! | room | what it does |
 //! |---|---|
 //! | [`parcels`] | cuts blocks into lots that front on their streets |
+//! | [`footprints`] | stands one building on each lot |
 //!
 //! Both learn from whole blocks of the example ([`library`]) and let each new block take after one
 //! of them. [`operations()`] lists the rooms for the command line, recipes and the studio.
 
+pub mod footprints;
 pub mod library;
 mod operations;
 pub mod parcels;

@@ -1,8 +1,8 @@
 use exurb_operation::{AnyOperation, erase};
 
-use crate::parcels;
+use crate::{footprints, parcels};
 
 /// The rooms of this crate.
 pub fn operations() -> Vec<Box<dyn AnyOperation>> {
-    vec![erase::<parcels::Parcels>()]
+    vec![erase::<parcels::Parcels>(), erase::<footprints::Footprints>()]
 }

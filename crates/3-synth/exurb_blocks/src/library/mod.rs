@@ -18,7 +18,7 @@ mod open_land;
 pub use block_features::{Features, Surroundings};
 pub use building_sample::BuildingSample;
 pub use donor::Donors;
-pub use example_block::ExampleBlock;
+pub use example_block::{ExampleBlock, median};
 pub use open_land::OpenLand;
 
 use exurb_city::{City, block};

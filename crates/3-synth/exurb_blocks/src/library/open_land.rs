@@ -51,6 +51,14 @@ impl OpenLand {
         (open > 0).then(|| (most.clone(), open as f64 / points.len() as f64))
     }
 
+    /// Is the point on water?
+    pub fn is_water(&self, p: GridPoint) -> bool {
+        let mut near = Vec::new();
+        self.boxes.meeting(p, p, &mut near);
+        let areas = near.iter().map(|n| &self.areas[*n as usize]);
+        areas.filter(|(_, class)| &**class == "water").any(|(polygon, _)| polygon.contains(p))
+    }
+
     /// Is the point on open land or water?
     pub fn holds(&self, p: GridPoint) -> bool {
         let mut near = Vec::new();

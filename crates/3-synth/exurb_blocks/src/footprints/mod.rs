@@ -1,0 +1,251 @@
+//! `blocks footprints`: stands one building on each parcel, as the example's stand by their streets.
+//!
+//! No paper. Steps: 1 each block takes after the same example block as its parcels did (crate
+//! `library`); 2 lots are walked in order along the kerb, each draws one of the example's buildings of
+//! like frontage that goes with the building before: shared walls go on, gaps go on ([`choose`]);
+//! 3 the building is put behind the example's setback: in rows it is stretched from border to border,
+//! around corners it follows both fronts, elsewhere it keeps its outline and its turn and is scaled a
+//! little ([`place`]); 4 what does not fit, lies in water or under a bridge, or would be too small,
+//! leaves its lot empty, as do as many lots as in the example where that has all its buildings.
+//! Units: metres. Complexity: linear in lots. Each block has its own random stream by place.
+
+mod choose;
+mod defaults;
+mod error;
+mod lot;
+mod params;
+mod place;
+#[cfg(test)]
+mod tests;
+
+use exurb_city::{Block, Building, City, Edit, Parcel, area, block};
+use exurb_geom::{GridPoint, Polygon, SegmentGrid, SegmentIndex, grid};
+use exurb_operation::{Card, Example, Failure, Operation, Run, Scope, rng};
+use rand::RngExt;
+use rayon::prelude::*;
+
+pub use error::Error;
+pub use params::Params;
+
+use crate::library::{BuildingSample, Donors, ExampleBlock, Library, OpenLand};
+use crate::ring::Ring;
+use crate::scoped::Scoped;
+use lot::Lot;
+use place::{Wish, place};
+
+/// The operation.
+pub struct Footprints;
+
+impl Operation for Footprints {
+    const CARD: Card = Card {
+        stage: "blocks",
+        method: "footprints",
+        summary: "stands one building on each parcel, as the example's stand by their streets",
+        source: "own method",
+        needs_example: false,
+    };
+    type Params = Params;
+    type Learned = Library;
+
+    fn learn(examples: &[Example], _: &Params, run: &Run) -> Result<Library, Failure> {
+        let library = Library::of(examples, run)?;
+        if !library.has_buildings {
+            run.warn(
+                "the example has no buildings; rows of houses stand in small blocks and detached \
+                 houses in large ones",
+            );
+        }
+        Ok(library)
+    }
+
+    fn edit(
+        city: &City,
+        scope: &Scope,
+        learned: &Library,
+        params: &Params,
+        run: &Run,
+    ) -> Result<Edit, Failure> {
+        if city.parcels.is_empty() {
+            let (operation, message) = (Self::CARD.name(), Error::NoParcels.to_string());
+            return Err(Failure::City { operation, message });
+        }
+        let scoped = Scoped::of(city, &city.blocks, scope);
+        let site = Site::of(city, learned, run);
+        let mut lots: Vec<Vec<&Parcel>> = vec![Vec::new(); city.blocks.len()];
+        let number: std::collections::BTreeMap<u32, usize> =
+            city.blocks.iter().enumerate().map(|(i, b)| (b.id, i)).collect();
+        for parcel in city.parcels.iter() {
+            if let Some(i) = number.get(&parcel.block) {
+                lots[*i].push(parcel);
+            }
+        }
+        let built: Vec<Result<Vec<Building>, Failure>> = city
+            .blocks
+            .par_iter()
+            .zip(lots)
+            .map(|(block, lots)| {
+                run.check()?;
+                let inside = scoped.holds(block.id) && !lots.is_empty();
+                Ok(if inside { site.build(block, &lots, params, run) } else { Vec::new() })
+            })
+            .collect();
+        let mut buildings: Vec<Building> =
+            city.buildings.iter().filter(|b| !scoped.holds(b.block)).cloned().collect();
+        for list in built {
+            buildings.extend(list?);
+        }
+        buildings.sort_by_key(|b| (b.block, b.parcel));
+        for (building, id) in buildings.iter_mut().zip(1..) {
+            building.id = id;
+        }
+        Ok(Edit { buildings: Some(buildings), ..Edit::default() })
+    }
+}
+
+/// What all blocks share.
+struct Site<'a> {
+    city: &'a City,
+    donors: Donors<'a>,
+    open: OpenLand,
+    /// Bridges and the like that pass over blocks.
+    over: SegmentIndex,
+}
+
+impl<'a> Site<'a> {
+    fn of(city: &'a City, learned: &'a Library, run: &Run) -> Self {
+        let bounding = block::bounding_edges(&city.streets);
+        let mut over = SegmentIndex::new(50.0);
+        for (id, edge) in city.streets.edges() {
+            if !bounding[id.index()] && !edge.data.tunnel {
+                over.insert_line(id.0, &edge.line_m());
+            }
+        }
+        let donors = learned.donors(&city.blocks, run.seed());
+        Self { city, donors, open: OpenLand::of(city), over }
+    }
+
+    fn build(
+        &self,
+        block: &Block,
+        parcels: &[&Parcel],
+        params: &Params,
+        run: &Run,
+    ) -> Vec<Building> {
+        let donors = self.donors.of(block, &self.city.streets);
+        let key = rng::place_key(GridPoint::round(block.polygon.centroid()));
+        let mut rng = run.stream(key);
+        let fallback = defaults::samples(block);
+        let mut samples = choose::samples(&donors);
+        if samples.is_empty() {
+            samples = fallback.iter().collect();
+        }
+        let style = Style::of(&donors, &samples, params);
+        let lots = in_order(block, parcels);
+        let mut out = Vec::new();
+        let mut last: Option<(exurb_geom::Vec2, bool)> = None;
+        for (parcel, lot) in &lots {
+            let empty = rng.random::<f64>() < style.empty_share;
+            let (from, to) = lot.ends();
+            let before =
+                last.filter(|(end, _)| end.distance(from) < 0.5).map(|(_, touches)| touches);
+            let depth = lot.depth_at(0.0) + block.pavement_m;
+            let Some(sample) = choose::choose(&samples, lot, depth, before, &mut rng) else {
+                continue;
+            };
+            last = Some((to, sample.gap_after_m == 0.0 && !empty));
+            if empty {
+                continue;
+            }
+            let wish = style.wish(sample, block.pavement_m, params);
+            let Some(polygon) = place(lot, &wish).filter(|p| self.is_free(p)) else { continue };
+            let mut building = Building::new(0, polygon, parcel.provenance.clone());
+            (building.block, building.parcel) = (block.id, parcel.id);
+            out.push(building);
+        }
+        if parcels.iter().any(|p| p.provenance.origin == exurb_city::Origin::Imported) {
+            drop_overlaps(&mut out);
+        }
+        out
+    }
+
+    /// Clear of water, open land and bridges?
+    fn is_free(&self, polygon: &Polygon) -> bool {
+        let wet = polygon.exterior().iter().any(|p| self.open.is_water(*p));
+        let crossed = || {
+            let mut hit = false;
+            self.over.visit(polygon.bounds(), |e| {
+                let (c, d) = (GridPoint::round(e.a), GridPoint::round(e.b));
+                hit |= polygon.contains(c)
+                    || polygon.segments().any(|(a, b)| grid::intersects(a, b, c, d));
+                !hit
+            });
+            hit
+        };
+        !wet && !self.open.holds(GridPoint::round(polygon.interior_point())) && !crossed()
+    }
+}
+
+/// What the buildings of one block have in common.
+struct Style {
+    empty_share: f64,
+    setback_m: f64,
+}
+
+impl Style {
+    fn of(donors: &[&ExampleBlock], samples: &[&BuildingSample], params: &Params) -> Self {
+        let learned = donors.first().and_then(|d| d.empty_share).unwrap_or(0.0);
+        let empty_share = if params.empty_share < 0.0 { learned } else { params.empty_share };
+        let setback_m = crate::library::median(samples.iter().map(|s| s.setback_m));
+        Self { empty_share, setback_m }
+    }
+
+    fn wish<'s>(&self, sample: &'s BuildingSample, pavement_m: f64, params: &Params) -> Wish<'s> {
+        // Houses in a row keep the building line of their block, give or take a bay window.
+        let in_row = sample.gap_before_m == 0.0 || sample.gap_after_m == 0.0;
+        let off_line = (sample.setback_m - self.setback_m).abs();
+        let setback = if in_row && off_line < 1.5 { self.setback_m } else { sample.setback_m };
+        Wish {
+            sample,
+            setback_m: (setback * params.setback_factor - pavement_m).max(0.0),
+            depth_m: sample.size_m.y * params.depth_factor,
+            wall_before: sample.gap_before_m == 0.0,
+            wall_after: sample.gap_after_m == 0.0,
+            min_gap_m: params.min_gap,
+            min_area_m2: params.min_area,
+        }
+    }
+}
+
+/// Lots with a front, in order along the kerb; those of open land are left out.
+fn in_order<'p>(block: &Block, parcels: &[&'p Parcel]) -> Vec<(&'p Parcel, Lot)> {
+    let kerb = SegmentGrid::new(block.polygon.segments().collect());
+    let rings: Vec<Ring> = block.polygon.rings().map(Ring::of).collect();
+    let mut lots: Vec<(usize, f64, &Parcel, Lot)> = parcels
+        .iter()
+        .filter(|p| p.land_use.as_deref().is_none_or(|class| !area::is_open(class)))
+        .filter_map(|parcel| {
+            let lot = Lot::of(&parcel.polygon, &kerb, block.pavement_m)?;
+            let start = lot.ends().0;
+            let places = rings.iter().enumerate().map(|(r, ring)| (r, ring.nearest(start)));
+            let (ring, place) = places.min_by(|a, b| a.1.distance_m.total_cmp(&b.1.distance_m))?;
+            Some((ring, place.at_m, *parcel, lot))
+        })
+        .collect();
+    lots.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.id.cmp(&b.2.id)));
+    lots.into_iter().map(|(.., parcel, lot)| (parcel, lot)).collect()
+}
+
+/// Imported parcels may overlap; what they carry may not.
+fn drop_overlaps(buildings: &mut Vec<Building>) {
+    let mut kept: Vec<Building> = Vec::new();
+    for building in std::mem::take(buildings) {
+        let overlaps = kept.iter().any(|other| {
+            let shared = exurb_geom::overlay::intersection(&other.polygon, &building.polygon);
+            shared.iter().map(Polygon::area_m2).sum::<f64>() > 0.05
+        });
+        if !overlaps {
+            kept.push(building);
+        }
+    }
+    *buildings = kept;
+}
