@@ -3,7 +3,8 @@
 //! A glyph is a list of lines on a grid; a point is two digits, column and row. Row 2 is the base
 //! line, 7 the height of small letters, 9 that of capitals, 0 the depth of descenders.
 
-use crate::display::Px;
+/// A point in pixels, x right, y down.
+type Px = [f32; 2];
 
 const BASE_ROW: f32 = 2.0;
 const CAPITAL_ROWS: f32 = 7.0;

@@ -27,7 +27,7 @@ mod color;
 mod color_by;
 mod display;
 mod features;
-mod font;
+pub mod font;
 mod ground;
 mod map;
 mod options;

@@ -38,15 +38,15 @@ pub struct StreetPaint {
 
 const LIGHT: Sheet = Sheet {
     style: Style::Default,
-    paper: rgb(0xf1ede4),
-    block: rgb(0xf6f3ec),
-    block_line: rgb(0xe3ddd0),
-    parcel_line: rgb(0xe0d8c8),
+    paper: rgb(0xece7dc),
+    block: rgb(0xf2eee5),
+    block_line: rgb(0xdcd5c6),
+    parcel_line: rgb(0xdfd7c8),
     water: rgb(0xa8cfe4),
     water_line: rgb(0x7cb0cd),
-    building: rgb(0xdcd1c2),
+    building: rgb(0xd8ccbc),
     public_building: rgb(0xcdb9a4),
-    building_line: rgb(0xb5a48f),
+    building_line: rgb(0xab9a84),
     building_shadow: rgb(0x5c4a34).alpha(52),
     tree: rgb(0x86b56b).alpha(165),
     tree_line: rgb(0x5f9449).alpha(150),
@@ -118,12 +118,12 @@ impl Sheet {
                 paint(0xfde8a9, 0xcbb169, 2.6)
             }
             (Style::Default, Class::Tertiary | Class::TertiaryLink) => {
-                paint(0xfff6d6, 0xc9b98c, 2.2)
+                paint(0xfff3c4, 0xbfab74, 2.2)
             }
             (Style::Default, Class::Pedestrian) => paint(0xf0e7e3, 0xcdbdb4, 1.2),
             (Style::Default, Class::LivingStreet) => paint(0xfbf9f5, 0xcbc3b5, 1.2),
-            (Style::Default, Class::Service) => paint(0xfdfcfa, 0xd9d2c5, 0.8),
-            (Style::Default, _) => paint(0xffffff, 0xc9c0b0, 1.4),
+            (Style::Default, Class::Service) => paint(0xfdfcfa, 0xd0c8b9, 0.8),
+            (Style::Default, _) => paint(0xffffff, 0xbfb5a4, 1.4),
             (Style::Dark, Class::Motorway | Class::Trunk) => paint(0xd98b4a, 0x14181d, 3.4),
             (Style::Dark, Class::MotorwayLink | Class::TrunkLink) => paint(0xb87842, 0x14181d, 2.0),
             (Style::Dark, Class::Primary | Class::PrimaryLink) => paint(0xc9a35a, 0x14181d, 2.8),
