@@ -5,6 +5,9 @@ use toml::de::{DeTable, DeValue};
 
 use crate::{Error, Recipe, Registry, Source, Step, recipe::VERSION};
 
+/// More threads are a slip of the pen.
+const MOST_THREADS: usize = 1024;
+
 impl Recipe {
     /// Reads a recipe and checks it against the operations of this program. `name` is the name of
     /// the file, for errors, which give the line.
@@ -38,7 +41,7 @@ impl Recipe {
                 at(offset_of(text, Some(i), named.map_or("op", String::as_str)), &message)
             })?;
         }
-        recipe.check_sources().map_err(|message| at(None, &message))?;
+        recipe.check_parts().map_err(|message| at(None, &message))?;
         recipe.normalise(registry);
         Ok(recipe)
     }
@@ -66,26 +69,36 @@ impl Recipe {
         }
     }
 
-    /// Weights are positive, and no step learns from an example that is not there.
-    fn check_sources(&self) -> Result<(), String> {
-        if let Some(source) =
-            self.examples.iter().find(|s| !(s.weight > 0.0 && s.weight.is_finite()))
-        {
-            return Err(format!(
-                "`weight` of {} is {}, expected a positive number",
-                source.name(),
-                source.weight
-            ));
+    /// What the types do not say: weights are positive, names and files differ, no step learns from
+    /// an example that is not there.
+    fn check_parts(&self) -> Result<(), String> {
+        if self.threads.is_some_and(|n| !(1..=MOST_THREADS).contains(&n)) {
+            return Err(format!("`threads` is out of range, expected 1 to {MOST_THREADS}"));
         }
-        let names: Vec<String> = self.examples.iter().map(Source::name).collect();
-        for wanted in self.steps.iter().filter_map(|step| step.examples.as_ref()).flatten() {
-            if !names.contains(wanted) {
-                let there = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-                return Err(format!("there is no example named `{wanted}`; there are: {there}"));
+        for Source { weight, name, file, .. } in self.examples.iter().chain(&self.city) {
+            if !(*weight > 0.0 && weight.is_finite()) {
+                let name = name.as_deref().map_or(file.display().to_string(), str::to_owned);
+                return Err(format!("`weight` of {name} is {weight}, expected a positive number"));
             }
         }
-        Ok(())
+        let names: Vec<String> = self.examples.iter().map(Source::name).collect();
+        if let Some(name) = doubled(&names) {
+            return Err(format!("two examples are named `{name}`; give one another `name`"));
+        }
+        let files: Vec<_> = self.exports.iter().map(|export| &export.file).collect();
+        if let Some(file) = doubled(&files) {
+            return Err(format!("{} is exported twice; give one another `file`", file.display()));
+        }
+        let mut wanted = self.steps.iter().filter_map(|step| step.examples.as_ref()).flatten();
+        wanted.find(|wanted| !names.contains(wanted)).map_or(Ok(()), |wanted| {
+            let there = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+            Err(format!("there is no example named `{wanted}`; there are: {there}"))
+        })
     }
+}
+
+fn doubled<T: PartialEq>(items: &[T]) -> Option<&T> {
+    items.iter().enumerate().find(|(i, item)| items[..*i].contains(item)).map(|(_, item)| item)
 }
 
 fn normal_params(params: &Map<String, Value>, schema: &Value) -> Map<String, Value> {

@@ -144,6 +144,15 @@ pub struct Export {
     /// Width of a picture in pixels.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub width: Option<u32>,
+    /// Perspective: where the camera stands, in degrees clockwise from north.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub azimuth: Option<f64>,
+    /// Perspective: how high the camera stands over the horizon, in degrees.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub elevation: Option<f64>,
+    /// Perspective: 1 fills the picture with the city, 2 with half of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub zoom: Option<f64>,
 }
 
 impl Default for Recipe {

@@ -6,7 +6,8 @@
 //! | `options` | options that several commands share |
 //! | `flags` | parameters of operations as flags, from their JSON Schema |
 //! | `job` | threads, progress, Ctrl-C, limit of memory |
-//! | `output`, `pending`, `format` | files to write: whole or not at all |
+//! | `output`, `pending` | files to write: whole or not at all |
+//! | `format`, `layer`, `picture` | what is in them |
 //! | `report`, `summary` | what a user reads |
 //! | `problem` | exit status: 0 done, 1 the work failed, 2 wrong usage or unreadable input |
 
@@ -19,6 +20,7 @@ mod memory;
 mod options;
 mod output;
 mod pending;
+mod picture;
 mod problem;
 mod report;
 mod summary;

@@ -3,15 +3,14 @@
 use std::path::Path;
 use std::time::Instant;
 
-use clap::builder::PossibleValuesParser;
 use exurb_city::City;
 use exurb_operation::Run;
-use exurb_plan::{ColorBy, Layer, Style};
 use exurb_recipe::Export;
 
 use crate::format::Format;
 use crate::layer;
 use crate::pending::Pending;
+use crate::picture;
 use crate::problem::Problem;
 
 /// The files that a job will write.
@@ -27,7 +26,7 @@ impl Outputs {
             exports.iter().map(|e| Format::of(&e.file, e.to.as_deref())).collect();
         let mut files = Vec::new();
         for (export, format) in exports.iter().zip(formats?) {
-            check(export, format)?;
+            picture::check(export, format)?;
             files.push((export.clone(), format, Pending::new(&folder.join(&export.file))?));
         }
         Ok(Self { files })
@@ -36,18 +35,18 @@ impl Outputs {
     /// Writes them all; gives the seconds it took. A file appears only when all are whole.
     pub fn write(self, city: &City, run: &Run) -> Result<f64, Problem> {
         let started = Instant::now();
+        let mut others = Vec::new();
         for (export, format, pending) in &self.files {
             run.phase(&format!("writing {}", export.file.display()));
             run.check()?;
-            match &export.layer {
+            others.extend(match &export.layer {
                 Some(name) => write(&layer::alone(city, name)?, export, *format, pending)?,
                 None => write(city, export, *format, pending)?,
-            }
+            });
         }
         run.check()?;
-        for (.., pending) in self.files {
-            pending.commit()?;
-        }
+        let own = self.files.into_iter().map(|(.., pending)| pending);
+        own.chain(others).try_for_each(Pending::commit)?;
         Ok(started.elapsed().as_secs_f64())
     }
 }
@@ -58,74 +57,56 @@ pub fn make_folder(folder: &Path) -> Result<(), Problem> {
         .map_err(|e| Problem::failed(format!("{} cannot be made: {e}", folder.display())))
 }
 
-/// The styles of maps, for the command line.
-pub fn style_names() -> PossibleValuesParser {
-    PossibleValuesParser::new(Style::ALL.map(Style::as_str))
-}
-
-/// What colours of maps can tell, for the command line.
-pub fn color_names() -> PossibleValuesParser {
-    PossibleValuesParser::new(ColorBy::ALL.map(ColorBy::as_str))
-}
-
-fn write(city: &City, export: &Export, format: Format, pending: &Pending) -> Result<(), Problem> {
-    let path = pending.beside();
-    let failed = |message: String| pending.problem(&message);
+/// Writes one file; gives the files that go with it.
+fn write(
+    city: &City,
+    export: &Export,
+    format: Format,
+    pending: &Pending,
+) -> Result<Vec<Pending>, Problem> {
+    let model = exurb_model3d::Options::default();
     match format {
-        Format::GeoPackage => {
-            exurb_gis::write_geopackage(city, path).map_err(|e| failed(e.to_string()))
+        Format::GeoPackage => exurb_gis::write_geopackage(city, pending.beside())
+            .map_err(|e| pending.problem(&e.to_string()))?,
+        Format::GeoJson => pending.stream(|out| exurb_gis::write_geojson(city, out))?,
+        Format::OsmXml => pending.stream(|out| exurb_osm::write_xml(city, out))?,
+        Format::OsmPbf => pending.stream(|out| exurb_osm::write_pbf(city, out))?,
+        Format::Glb => {
+            let glb = exurb_model3d::to_glb(city, &model);
+            pending.write(&glb.map_err(|e| pending.problem(&e.to_string()))?)?;
         }
-        Format::GeoJson | Format::OsmXml | Format::OsmPbf | Format::Glb | Format::Obj => {
-            Err(failed("LATER".to_owned()))
+        Format::Obj => return write_obj(city, &model, pending),
+        Format::Svg => {
+            pending.write(exurb_plan::to_svg(city, &picture::map(export)?).as_bytes())?
         }
-        Format::Svg => pending.write(exurb_plan::to_svg(city, &map_options(export)?).as_bytes()),
-        Format::Png if export.view.as_deref() == Some("3d") => Err(failed("LATER".to_owned())),
+        Format::Png if picture::is_perspective(export) => {
+            let png = exurb_model3d::render_png(city, &model, &picture::view(export));
+            pending.write(&png.map_err(|e| pending.problem(&e.to_string()))?)?;
+        }
         Format::Png => {
-            let png = exurb_plan::to_png(city, &map_options(export)?);
-            pending.write(&png.map_err(|e| failed(e.to_string()))?)
+            let png = exurb_plan::to_png(city, &picture::map(export)?);
+            pending.write(&png.map_err(|e| pending.problem(&e.to_string()))?)?;
         }
     }
+    Ok(Vec::new())
 }
 
-/// What the options of an export ask for is there.
-fn check(export: &Export, format: Format) -> Result<(), Problem> {
-    let name = export.file.display();
-    map_options(export)?;
-    if let Some(layer) = &export.layer {
-        layer::check(layer)?;
+/// An OBJ, and beside it its materials and textures.
+fn write_obj(
+    city: &City,
+    model: &exurb_model3d::Options,
+    pending: &Pending,
+) -> Result<Vec<Pending>, Problem> {
+    let stem = pending.stem();
+    let files = exurb_model3d::to_obj(city, model, &stem);
+    let files = files.map_err(|e| pending.problem(&e.to_string()))?;
+    pending.write(files.obj.as_bytes())?;
+    let materials = (format!("{stem}.mtl"), files.mtl.into_bytes());
+    let mut others = Vec::new();
+    for (name, bytes) in files.textures.into_iter().chain([materials]) {
+        let other = Pending::new(&pending.path().with_file_name(name))?;
+        other.write(&bytes)?;
+        others.push(other);
     }
-    match export.view.as_deref() {
-        Some("3d") if format != Format::Png => Err(Problem::usage(format!(
-            "{name}: perspective pictures are PNG; end the name in .png, or write a model as .glb or .obj"
-        ))),
-        Some("map" | "3d") | None => Ok(()),
-        Some(view) => {
-            Err(Problem::usage(format!("{name}: there is no view `{view}`; there are map and 3d")))
-        }
-    }
-}
-
-fn map_options(export: &Export) -> Result<exurb_plan::Options, Problem> {
-    let default = exurb_plan::Options::default();
-    let known = |kind: &str, name: &str, all: Vec<&str>| {
-        Problem::usage(format!("there is no {kind} `{name}`; there are {}", all.join(", ")))
-    };
-    let style = match export.style.as_deref() {
-        Some(name) => Style::parse(name)
-            .ok_or_else(|| known("style", name, Style::ALL.map(Style::as_str).to_vec()))?,
-        None => default.style,
-    };
-    let color_by =
-        match export.color_by.as_deref() {
-            Some(name) => Some(ColorBy::parse(name).ok_or_else(|| {
-                known("colouring", name, ColorBy::ALL.map(ColorBy::as_str).to_vec())
-            })?),
-            None => default.color_by,
-        };
-    let layers = match export.layer.as_deref().and_then(Layer::parse) {
-        Some(layer) => vec![layer],
-        None => default.layers,
-    };
-    let width_px = export.width.unwrap_or(default.width_px);
-    Ok(exurb_plan::Options { width_px, style, color_by, layers, ..default })
+    Ok(others)
 }

@@ -31,9 +31,9 @@ pub fn report(
         return report::json(&value);
     }
     let Seconds { read, learn, synthesise, write } = seconds;
-    let mut text = info.to_text();
+    let mut text = brief(&info);
     text.push_str(&format!(
-        "\ntime            {:.2} s: read {read:.2}, learn {learn:.2}, synthesise {synthesise:.2}, \
+        "time            {:.2} s: read {read:.2}, learn {learn:.2}, synthesise {synthesise:.2}, \
          write {write:.2}\n",
         read + learn + synthesise + write
     ));
@@ -53,4 +53,25 @@ pub fn written(files: &[&PathBuf], options: &RunOptions) -> Result<(), Problem> 
         files.iter().for_each(|f| report::message_line(&format!("written {}", f.display())));
     }
     Ok(())
+}
+
+/// The figures, then what does not hold, if anything.
+fn brief(info: &Info) -> String {
+    let whole = info.to_text();
+    let figures = whole.split("\n\n").next().unwrap_or(&whole);
+    let broken = info.laws.iter().filter(|(_, law)| !law.pass).map(|(name, _)| name.as_str());
+    let gates = info.likeness_gates.iter();
+    let missed = gates.filter(|(_, gate)| gate.pass == Some(false)).map(|(name, _)| name.as_str());
+    format!(
+        "{figures}\nlaws            {}\nlikeness gates  {}\n",
+        verdict("broken", &broken.collect::<Vec<_>>()),
+        verdict("missed", &missed.collect::<Vec<_>>())
+    )
+}
+
+fn verdict(word: &str, names: &[&str]) -> String {
+    match names {
+        [] => "all kept".to_owned(),
+        names => format!("{word}: {}; `exurb info` tells more", names.join(", ")),
+    }
 }

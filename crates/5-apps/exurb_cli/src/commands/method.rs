@@ -159,6 +159,6 @@ fn examples(
     if card.needs_example {
         return Err(Problem::usage(message));
     }
-    run.warn(format!("{message}. {} goes on without", card.name()));
+    run.warn(format!("{message}. {} learns from the city itself meanwhile", card.name()));
     Ok(())
 }

@@ -21,10 +21,10 @@ struct Options {
     #[arg(long, value_name = "VIEW", default_value = "map", value_parser = ["map", "3d"])]
     view: String,
     /// Colours and widths of the map
-    #[arg(long, value_name = "NAME", value_parser = crate::output::style_names())]
+    #[arg(long, value_name = "NAME", value_parser = crate::picture::style_names())]
     style: Option<String>,
     /// What colours tell, instead of the style's own
-    #[arg(long, value_name = "WHAT", value_parser = crate::output::color_names())]
+    #[arg(long, value_name = "WHAT", value_parser = crate::picture::color_names())]
     color_by: Option<String>,
     /// Draw this layer alone
     #[arg(long, value_name = "LAYER")]
@@ -32,6 +32,15 @@ struct Options {
     /// Width in pixels
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(16..=20_000))]
     width: Option<u32>,
+    /// Perspective: where the camera stands, in degrees clockwise from north [default: 225]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    azimuth: Option<f64>,
+    /// Perspective: how high it stands over the horizon, in degrees [default: 30]
+    #[arg(long, value_name = "DEGREES")]
+    elevation: Option<f64>,
+    /// Perspective: 1 fills the picture with the city, 2 with half of it [default: 1]
+    #[arg(long, value_name = "FACTOR")]
+    zoom: Option<f64>,
     #[command(flatten)]
     part: PartOptions,
     #[command(flatten)]
@@ -60,6 +69,9 @@ pub fn run(matches: &ArgMatches) -> Result<(), Problem> {
         style: options.style.clone(),
         color_by: options.color_by.clone(),
         width: options.width,
+        azimuth: options.azimuth,
+        elevation: options.elevation,
+        zoom: options.zoom,
     };
     let source = options.part.apply(Source::new(&options.city));
     job::work(&options.run, 1, |run| {
