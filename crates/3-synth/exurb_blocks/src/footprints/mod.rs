@@ -20,7 +20,7 @@ mod tests;
 
 use exurb_city::{Block, Building, City, Edit, Parcel, area, block};
 use exurb_geom::{GridPoint, Polygon, SegmentGrid, SegmentIndex, grid};
-use exurb_operation::{Card, Example, Failure, Operation, Run, Scope, rng};
+use exurb_operation::{Card, Example, Failure, Operation, Rng, Run, Scope, rng};
 use rand::RngExt;
 use rayon::prelude::*;
 
@@ -102,6 +102,11 @@ impl Operation for Footprints {
     }
 }
 
+/// A block's coverage is aimed at this many times.
+const TRIES: usize = 4;
+/// Near enough to the example's coverage, as a share of it.
+const CLOSE: f64 = 0.08;
+
 /// What all blocks share.
 struct Site<'a> {
     city: &'a City,
@@ -133,7 +138,7 @@ impl<'a> Site<'a> {
     ) -> Vec<Building> {
         let donors = self.donors.of(block, &self.city.streets);
         let key = rng::place_key(GridPoint::round(block.polygon.centroid()));
-        let mut rng = run.stream(key);
+        let rng = run.stream(key);
         let fallback = defaults::samples(block);
         let mut samples = choose::samples(&donors);
         if samples.is_empty() {
@@ -141,29 +146,58 @@ impl<'a> Site<'a> {
         }
         let style = Style::of(&donors, &samples, params);
         let lots = in_order(block, parcels);
+        let area = block.polygon.area_m2();
+        let mut best: Option<(f64, Vec<Building>)> = None;
+        let mut growth = 1.0;
+        for _ in 0..TRIES {
+            let built = self.build_lots(block, &lots, &samples, &style, growth, &mut rng.clone());
+            let covered = built.iter().map(|b| b.polygon.area_m2()).sum::<f64>() / area;
+            let Some(wanted) = style.coverage else { return built };
+            let off = (covered - wanted).abs() / wanted;
+            if best.as_ref().is_none_or(|(least, _)| off < *least) {
+                best = Some((off, built));
+            }
+            let next = (growth * (wanted / covered.max(1e-3)).clamp(0.6, 1.6)).clamp(0.5, 3.0);
+            if off < CLOSE || (next - growth).abs() < 0.05 {
+                break;
+            }
+            growth = next;
+        }
+        let mut out = best.map(|(_, built)| built).unwrap_or_default();
+        if parcels.iter().any(|p| p.provenance.origin == exurb_city::Origin::Imported) {
+            drop_overlaps(&mut out);
+        }
+        out
+    }
+
+    /// Every lot's building when all are `growth` times as large as in the example.
+    fn build_lots(
+        &self,
+        block: &Block,
+        lots: &[(&Parcel, Lot)],
+        samples: &[&BuildingSample],
+        style: &Style,
+        growth: f64,
+        rng: &mut Rng,
+    ) -> Vec<Building> {
         let mut out = Vec::new();
         let mut last: Option<(exurb_geom::Vec2, bool)> = None;
-        for (parcel, lot) in &lots {
+        for (parcel, lot) in lots {
             let empty = rng.random::<f64>() < style.empty_share;
             let (from, to) = lot.ends();
             let before =
                 last.filter(|(end, _)| end.distance(from) < 0.5).map(|(_, touches)| touches);
             let depth = lot.depth_at(0.0) + block.pavement_m;
-            let Some(sample) = choose::choose(&samples, lot, depth, before, &mut rng) else {
-                continue;
-            };
+            let Some(sample) = choose::choose(samples, lot, depth, before, rng) else { continue };
             last = Some((to, sample.gap_after_m == 0.0 && !empty));
             if empty {
                 continue;
             }
-            let wish = style.wish(sample, block.pavement_m, params);
+            let wish = style.wish(sample, block.pavement_m, growth);
             let Some(polygon) = place(lot, &wish).filter(|p| self.is_free(p)) else { continue };
             let mut building = Building::new(0, polygon, parcel.provenance.clone());
             (building.block, building.parcel) = (block.id, parcel.id);
             out.push(building);
-        }
-        if parcels.iter().any(|p| p.provenance.origin == exurb_city::Origin::Imported) {
-            drop_overlaps(&mut out);
         }
         out
     }
@@ -186,20 +220,27 @@ impl<'a> Site<'a> {
 }
 
 /// What the buildings of one block have in common.
-struct Style {
+struct Style<'p> {
+    params: &'p Params,
     empty_share: f64,
     setback_m: f64,
+    /// Share of the block to be covered, where the example tells.
+    coverage: Option<f64>,
 }
 
-impl Style {
-    fn of(donors: &[&ExampleBlock], samples: &[&BuildingSample], params: &Params) -> Self {
+impl<'p> Style<'p> {
+    fn of(donors: &[&ExampleBlock], samples: &[&BuildingSample], params: &'p Params) -> Self {
         let learned = donors.first().and_then(|d| d.empty_share).unwrap_or(0.0);
         let empty_share = if params.empty_share < 0.0 { learned } else { params.empty_share };
         let setback_m = crate::library::median(samples.iter().map(|s| s.setback_m));
-        Self { empty_share, setback_m }
+        let first = donors.first().filter(|d| d.open.is_none() && d.coverage > 0.0);
+        let coverage = first.filter(|d| d.empty_share.is_some()).map(|d| d.coverage);
+        let coverage = coverage.filter(|_| params.empty_share < 0.0);
+        Self { params, empty_share, setback_m, coverage }
     }
 
-    fn wish<'s>(&self, sample: &'s BuildingSample, pavement_m: f64, params: &Params) -> Wish<'s> {
+    fn wish<'s>(&self, sample: &'s BuildingSample, pavement_m: f64, growth: f64) -> Wish<'s> {
+        let params = self.params;
         // Houses in a row keep the building line of their block, give or take a bay window.
         let in_row = sample.gap_before_m == 0.0 || sample.gap_after_m == 0.0;
         let off_line = (sample.setback_m - self.setback_m).abs();
@@ -207,7 +248,8 @@ impl Style {
         Wish {
             sample,
             setback_m: (setback * params.setback_factor - pavement_m).max(0.0),
-            depth_m: sample.size_m.y * params.depth_factor,
+            depth_m: sample.size_m.y * params.depth_factor * growth,
+            growth,
             wall_before: sample.gap_before_m == 0.0,
             wall_after: sample.gap_after_m == 0.0,
             min_gap_m: params.min_gap,

@@ -1,6 +1,6 @@
 //! A sample's outline put on a lot.
 
-use exurb_geom::{GridPoint, Polygon, Vec2, grid, overlay, split, trig};
+use exurb_geom::{GridPoint, Polygon, Vec2, grid, offset, overlay, split, trig};
 
 use super::lot::Lot;
 use crate::library::BuildingSample;
@@ -14,6 +14,8 @@ pub struct Wish<'a> {
     pub setback_m: f64,
     /// Depth to aim at in metres.
     pub depth_m: f64,
+    /// How many times as large as its sample the building is to be, for the block's coverage.
+    pub growth: f64,
     /// Does it share its wall with the building before?
     pub wall_before: bool,
     /// And with the one after?
@@ -30,22 +32,39 @@ const LEAST_SIDE_M: f64 = 3.0;
 const LEAST_COURT_M2: f64 = 25.0;
 /// Buildings are scaled within these bounds to suit their lot.
 const SCALES: (f64, f64) = (0.6, 1.35);
+/// A footprint is at most this many times as large as its sample.
+const MOST_GROWTH: f64 = 2.0;
+/// A border leaning more than this is no wall, as sideways by depth.
+const MOST_SKEW: f64 = 0.5;
 
 /// The footprint; `None` where none of at least the least area fits.
 pub fn place(lot: &Lot, wish: &Wish<'_>) -> Option<Polygon> {
-    let in_row = wish.wall_before || wish.wall_after;
-    let found = if in_row && (lot.is_corner() || lot.bulge_m > 0.5) {
-        around_corner(lot, wish)
-    } else if in_row {
-        between_walls(lot, wish).or_else(|| around_corner(lot, wish))
-    } else {
-        detached(lot, wish)
-    };
-    found.filter(|p| p.area_m2() >= wish.min_area_m2)
+    let mut found = None;
+    if wish.wall_before || wish.wall_after {
+        let bent = lot.is_corner() || lot.bulge_m > 0.5;
+        found = if bent { None } else { between_walls(lot, wish) };
+        found = found.or_else(|| around_corner(lot, wish));
+    }
+    found.or_else(|| detached(lot, wish)).filter(|p| is_sound(p, wish))
+}
+
+/// Large enough, no sliver, not blown up by a lot that is nothing like the sample's.
+fn is_sound(polygon: &Polygon, wish: &Wish<'_>) -> bool {
+    let sample = wish.sample;
+    let perimeter: f64 = sample.outline.iter().map(|ring| closed_length(ring)).sum();
+    let sample_width = 2.0 * sample.area_m2 / perimeter.max(1.0);
+    polygon.area_m2() >= wish.min_area_m2
+        && polygon.mean_width_m() >= (sample_width * 0.55).max(LEAST_SIDE_M * 0.6)
+        && polygon.area_m2() <= sample.area_m2 * MOST_GROWTH * wish.growth.max(1.0)
+        && polygon.is_valid()
+}
+
+fn closed_length(ring: &[Vec2]) -> f64 {
+    (0..ring.len()).map(|i| ring[i].distance(ring[(i + 1) % ring.len()])).sum()
 }
 
 /// Rows of houses: the ground behind the setback of every front, as deep as the sample, from border
-/// to border.
+/// to border. On a lot far larger than the sample's it is less deep.
 fn around_corner(lot: &Lot, wish: &Wish<'_>) -> Option<Polygon> {
     let behind = |distance_m: f64| {
         let mut ground = vec![lot.polygon.clone()];
@@ -56,55 +75,104 @@ fn around_corner(lot: &Lot, wish: &Wish<'_>) -> Option<Polygon> {
         ground
     };
     let built = behind(wish.setback_m).into_iter().next()?;
-    let court: Vec<Polygon> = behind(wish.setback_m + wish.depth_m)
-        .into_iter()
-        .filter(|c| c.area_m2() > LEAST_COURT_M2)
-        .collect();
-    if court.is_empty() {
-        return Some(built);
+    let mut depth = wish.depth_m;
+    while depth > 6.0 {
+        let court: Vec<Polygon> = behind(wish.setback_m + depth)
+            .into_iter()
+            .filter(|c| c.area_m2() > LEAST_COURT_M2)
+            .collect();
+        let found = if court.is_empty() {
+            Some(built.clone())
+        } else {
+            overlay::difference(&built, &court).into_iter().next()
+        };
+        let found = found.and_then(without_spikes).filter(|p| is_sound(p, wish));
+        if found.is_some() {
+            return found;
+        }
+        depth *= 0.75;
     }
-    let mut rest = overlay::difference(&built, &court).into_iter();
-    rest.find(|p| p.is_valid() && p.mean_width_m() > LEAST_SIDE_M / 2.0)
+    None
+}
+
+/// Thin strips along slanting borders are cut off.
+fn without_spikes(polygon: Polygon) -> Option<Polygon> {
+    const HALF_STRIP_M: f64 = 0.9;
+    let core = offset::inset(&polygon, HALF_STRIP_M).into_iter().next()?;
+    let opened = offset::inset(&core, -HALF_STRIP_M).into_iter().next()?;
+    // Growing back may round a corner over the border by a little.
+    let kept = overlay::intersection(&opened, &polygon).into_iter().next()?;
+    Some(if kept.area_m2() > 0.995 * polygon.area_m2() { polygon } else { kept })
+}
+
+/// A side of a lot as a building meets it.
+#[derive(Clone, Copy)]
+enum Flank {
+    /// A shared wall on the border.
+    Wall,
+    /// A straight wall at this x.
+    At(f64),
 }
 
 /// The sample's outline stretched between the borders it reaches.
 fn between_walls(lot: &Lot, wish: &Wish<'_>) -> Option<Polygon> {
     let front = lot.bulge_m + wish.setback_m;
-    let gap = |wall: bool, gap_m: f64| if wall { 0.0 } else { (gap_m / 2.0).max(wish.min_gap_m) };
-    let before = gap(wish.wall_before, wish.sample.gap_before_m);
-    let after = gap(wish.wall_after, wish.sample.gap_after_m);
     let depth = wish.depth_m.min(lot.depth_at(0.0) - front);
     if depth < LEAST_SIDE_M {
         return None;
     }
     let size = wish.sample.size_m;
-    let mut narrow = false;
-    let mut stretch = |p: &Vec2| {
+    let chord = |y: f64| lot.chord(y.max(lot.bulge_m + 0.05));
+    let (near, middle, far) = (chord(front)?, chord(front + depth / 2.0)?, chord(front + depth)?);
+    let inner = (near.0.max(middle.0).max(far.0), near.1.min(middle.1).min(far.1));
+    // Borders that run off askew are no walls.
+    let skew = |a: f64, b: f64| (b - a).abs() / depth > MOST_SKEW;
+    let wall_before = wish.wall_before && !skew(near.0, far.0);
+    let wall_after = wish.wall_after && !skew(near.1, far.1);
+    let gap = |wall: bool, gap_m: f64| if wall { 0.0 } else { (gap_m / 2.0).max(wish.min_gap_m) };
+    let mut before = gap(wall_before, wish.sample.gap_before_m);
+    let mut after = gap(wall_after, wish.sample.gap_after_m);
+    let room = inner.1 - inner.0;
+    // Gaps wider than the lot allows shrink together; a lot far too wide leaves some of it open.
+    let share = ((room - size.x.min(room * 0.8)) / (before + after).max(1e-9)).min(1.0);
+    (before, after) = (before * share, after * share);
+    let spare = room - before - after - size.x * SCALES.1;
+    match (wall_before, wall_after) {
+        _ if spare <= 0.0 => {}
+        (true, false) => after += spare,
+        (false, true) => before += spare,
+        _ if !wall_before => (before, after) = (before + spare / 2.0, after + spare / 2.0),
+        _ if spare > size.x * 0.5 => return None,
+        _ => {}
+    }
+    if room - before - after < LEAST_SIDE_M {
+        return None;
+    }
+    let left = if wall_before { Flank::Wall } else { Flank::At(inner.0 + before) };
+    let right = if wall_after { Flank::Wall } else { Flank::At(inner.1 - after) };
+    let stretch = |p: &Vec2| {
         let y = front + p.y / size.y * depth;
-        let (left, right) = lot.chord(y.max(lot.bulge_m + 0.05))?;
-        let room = right - left;
-        // Gaps wider than the lot allows shrink together.
-        let share = ((room - size.x.min(room * 0.7)) / (before + after).max(1e-9)).min(1.0);
-        let (left, right) = (left + before * share, right - after * share);
-        narrow |= right - left < LEAST_SIDE_M;
-        Some(lot.world(Vec2::new(left + (right - left) * p.x / size.x, y)))
+        let border = chord(y)?;
+        let x = |flank: Flank, border: f64| match flank {
+            Flank::Wall => border,
+            Flank::At(x) => x,
+        };
+        let (l, r) = (x(left, border.0), x(right, border.1));
+        Some(GridPoint::round(lot.world(Vec2::new(l + (r - l) * p.x / size.x, y))))
     };
-    let rings: Option<Vec<Vec<GridPoint>>> = wish
-        .sample
-        .outline
-        .iter()
-        .map(|ring| ring.iter().map(|p| stretch(p).map(GridPoint::round)).collect())
-        .collect();
-    let mut rings = rings?.into_iter();
-    let polygon = Polygon::new(rings.next()?, rings.collect())?;
-    (!narrow && polygon.is_valid() && stays_inside(&polygon, &lot.polygon)).then_some(polygon)
+    let mut rings =
+        wish.sample.outline.iter().map(|ring| ring.iter().map(stretch).collect::<Option<Vec<_>>>());
+    let outer = rings.next()??;
+    let polygon = Polygon::new(outer, rings.collect::<Option<_>>()?)?;
+    (is_sound(&polygon, wish) && stays_inside(&polygon, &lot.polygon)).then_some(polygon)
 }
 
 /// The sample as it is, scaled a little, with room on all sides.
 fn detached(lot: &Lot, wish: &Wish<'_>) -> Option<Polygon> {
     let size = wish.sample.size_m;
     let grown = (lot.width_m / wish.sample.frontage_m.max(1.0)).clamp(0.8, 1.2);
-    let depth_scale = wish.depth_m / size.y.max(1e-6);
+    let grown = grown * wish.growth.sqrt().clamp(0.8, 1.3);
+    let depth_scale = wish.depth_m / (size.y * wish.growth).max(1e-6);
     let mut scale = grown;
     while scale >= SCALES.0 * grown.min(1.0) {
         let scaled = Vec2::new(size.x * scale, size.y * scale * depth_scale);

@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use exurb_city::{Block, BlockClass, City};
-use exurb_geom::{Vec2, polyline};
+use exurb_geom::{Polygon, Vec2, overlay, polyline};
 
 use super::fronts::{BlockContents, Front, gap_m};
 use super::{BuildingSample, Features, OpenLand};
@@ -40,6 +40,8 @@ const LEAST_BLOCK_M2: f64 = 100.0;
 const OPEN_SHARE: f64 = 0.5;
 /// Coverage up to which a block of open land stays open: a park may hold a pavilion.
 const OPEN_COVERAGE: f64 = 0.06;
+/// Blocks covered more than this are built on all sides: one house may line several.
+const SPARSE_COVERAGE: f64 = 0.12;
 /// Buildings under this share of the block's usual footprint are garages and sheds.
 const ANNEX_SHARE: f64 = 0.4;
 /// Walls nearer than this are one, in metres.
@@ -72,7 +74,7 @@ pub fn measure(
         .map(|(class, _)| class);
     let rings: Vec<Ring> = block.polygon.rings().map(Ring::of).collect();
     let fronts = row_of_fronts(city, contents, &rings);
-    let mut buildings = samples(city, &fronts, &rings);
+    let mut buildings = samples(&fronts, &rings);
     let mut out = ExampleBlock {
         source: city.metadata.name.clone(),
         id: block.id,
@@ -131,8 +133,13 @@ fn measure_frontage(
         })
         .sum();
     out.fronted_share = (fronted / (kerb - flanks).max(1.0)).min(1.0);
-    let used = median(buildings.iter().map(|b| b.setback_m * 2.0 + b.size_m.y * 2.0));
-    let depth = if out.fronted_share < 0.6 { depth.min(used.max(20.0)) } else { depth };
+    if out.coverage > SPARSE_COVERAGE {
+        out.fronted_share = 1.0;
+    }
+    // Ground far behind the houses belongs to no row.
+    let used = median(buildings.iter().map(|b| b.setback_m + b.size_m.y));
+    let depths = if out.fronted_share < 0.6 { 2.0 } else { 3.0 };
+    let depth = depth.min((used * depths).max(25.0));
     out.depth_m = depth.clamp(DEPTHS_M.0, DEPTHS_M.1);
 }
 
@@ -155,39 +162,68 @@ fn lots(city: &City, contents: &BlockContents, rings: &[Ring]) -> Vec<(f64, f64)
     found.into_iter().map(|lot| (lot.2, lot.3)).collect()
 }
 
-/// Buildings that front on the kerb, in order along it: no annexes, none behind another.
-fn row_of_fronts(city: &City, contents: &BlockContents, rings: &[Ring]) -> Vec<(u32, Front)> {
-    let area = |i: &u32| city.buildings[*i as usize].polygon.area_m2();
-    let usual = median(contents.buildings.iter().map(area));
+/// A building that fronts on the kerb, with what is built onto it.
+struct Fronting {
+    polygon: Polygon,
+    front: Front,
+}
+
+/// Buildings that front on the kerb, in order along it. Annexes and buildings behind that share a
+/// wall with one of them are joined to it, others are left out.
+fn row_of_fronts(city: &City, contents: &BlockContents, rings: &[Ring]) -> Vec<Fronting> {
+    let polygon = |i: u32| &city.buildings[i as usize].polygon;
+    let usual = median(contents.buildings.iter().map(|i| polygon(*i).area_m2()));
     let mut fronts: Vec<(u32, Front)> = contents
         .buildings
         .iter()
-        .filter(|i| area(i) >= usual * ANNEX_SHARE)
-        .filter_map(|i| Some((*i, Front::of(&city.buildings[*i as usize].polygon, rings)?)))
+        .filter_map(|i| Some((*i, Front::of(polygon(*i), rings)?)))
         .collect();
     fronts.sort_by(|a, b| a.1.setback_m.total_cmp(&b.1.setback_m).then(a.0.cmp(&b.0)));
     let mut kept: Vec<(u32, Front)> = Vec::new();
+    let mut others: Vec<u32> = Vec::new();
     for (i, front) in fronts {
-        let (start, end) = front.span();
-        let hidden = kept.iter().any(|(_, other)| {
-            let (s, e) = other.span();
-            let shared = (end.min(e) - start.max(s)) / (end - start).max(0.1);
-            other.ring == front.ring
-                && shared > 0.5
-                && other.setback_m + other.size_m.y * 0.5 < front.setback_m
-        });
-        if !hidden {
+        let hidden = kept.iter().any(|(_, other)| front.is_behind(other));
+        if hidden || polygon(i).area_m2() < usual * ANNEX_SHARE {
+            others.push(i);
+        } else {
             kept.push((i, front));
         }
     }
-    kept.sort_by(|a, b| {
-        a.1.ring.cmp(&b.1.ring).then(a.1.at_m.total_cmp(&b.1.at_m)).then(a.0.cmp(&b.0))
+    let mut onto: Vec<Vec<u32>> = vec![Vec::new(); kept.len()];
+    for i in others {
+        let gap = |k: usize| gap_m(polygon(i), polygon(kept[k].0));
+        let nearest = (0..kept.len())
+            .filter(|k| polygon(i).area_m2() <= polygon(kept[*k].0).area_m2())
+            .map(|k| (k, gap(k)))
+            .min_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((k, _)) = nearest.filter(|(_, gap)| *gap < 0.05) {
+            onto[k].push(i);
+        }
+    }
+    let mut out: Vec<Fronting> = kept
+        .into_iter()
+        .zip(onto)
+        .filter_map(|((i, front), onto)| {
+            let parts = onto.iter().map(|j| polygon(*j)).chain([polygon(i)]);
+            match overlay::union(parts).into_iter().next() {
+                Some(whole) if !onto.is_empty() => {
+                    let front = Front::of(&whole, rings)?;
+                    Some(Fronting { polygon: whole, front })
+                }
+                _ => Some(Fronting { polygon: polygon(i).clone(), front }),
+            }
+        })
+        .collect();
+    let key = |f: &Fronting| (f.front.ring, f.front.at_m);
+    out.sort_by(|a, b| {
+        let ((r, s), (q, t)) = (key(a), key(b));
+        r.cmp(&q).then(s.total_cmp(&t)).then_with(|| a.polygon.cmp(&b.polygon))
     });
-    kept
+    out
 }
 
-fn samples(city: &City, fronts: &[(u32, Front)], rings: &[Ring]) -> Vec<BuildingSample> {
-    let polygon = |k: usize| &city.buildings[fronts[k].0 as usize].polygon;
+fn samples(fronts: &[Fronting], rings: &[Ring]) -> Vec<BuildingSample> {
+    let polygon = |k: usize| &fronts[k].polygon;
     let corners: Vec<Vec<Vec2>> = rings
         .iter()
         .map(|ring| {
@@ -197,10 +233,10 @@ fn samples(city: &City, fronts: &[(u32, Front)], rings: &[Ring]) -> Vec<Building
         .collect();
     (0..fronts.len())
         .map(|k| {
-            let front = &fronts[k].1;
+            let front = &fronts[k].front;
             let cap = front.size_m.x.max(8.0) * 2.0;
             let gap_to = |other: usize, along: f64| {
-                if other == k || fronts[other].1.ring != front.ring {
+                if other == k || fronts[other].front.ring != front.ring {
                     return cap;
                 }
                 if gap_m(polygon(k), polygon(other)) < SHARED_WALL_M {
@@ -215,8 +251,8 @@ fn samples(city: &City, fronts: &[(u32, Front)], rings: &[Ring]) -> Vec<Building
             };
             let before = (k + fronts.len() - 1) % fronts.len();
             let after = (k + 1) % fronts.len();
-            let gap_before_m = gap_to(before, ahead(fronts[before].1.span().1, front.span().0));
-            let gap_after_m = gap_to(after, ahead(front.span().1, fronts[after].1.span().0));
+            let gap_before_m = gap_to(before, ahead(fronts[before].front.span().1, front.span().0));
+            let gap_after_m = gap_to(after, ahead(front.span().1, fronts[after].front.span().0));
             let near_corner = front.setback_m * 1.5 + 4.0;
             let at_corner = corners[front.ring]
                 .iter()

@@ -105,6 +105,15 @@ impl Front {
         Some(Self { ring, at_m, setback_m, turn_rad, size_m: high - low, outline })
     }
 
+    /// Does `other` stand between it and the kerb?
+    pub fn is_behind(&self, other: &Self) -> bool {
+        let ((start, end), (from, to)) = (self.span(), other.span());
+        let shared = (end.min(to) - start.max(from)) / (end - start).max(0.1);
+        other.ring == self.ring
+            && shared > 0.5
+            && other.setback_m + other.size_m.y * 0.5 < self.setback_m
+    }
+
     /// Stretch of the ring it covers.
     pub fn span(&self) -> (f64, f64) {
         (self.at_m - self.size_m.x / 2.0, self.at_m + self.size_m.x / 2.0)

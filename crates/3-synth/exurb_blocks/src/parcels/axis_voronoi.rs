@@ -28,15 +28,20 @@ pub fn suits(ground: &Polygon, depth_m: f64) -> Option<OrientedBox> {
     .then_some(frame)
 }
 
-/// Sites of one or two rows in `frame`, labelled by parcel. `count` parcels are aimed at; `next_m`
-/// gives wanted frontages, which are stretched to the axis.
+/// One row or two.
+pub fn rows(frame: &OrientedBox, depth_m: f64) -> usize {
+    if frame.short_m() >= TWO_ROWS_DEPTHS * depth_m { 2 } else { 1 }
+}
+
+/// Sites of one or two rows in `frame`, labelled by parcel. `count` parcels are made; `next_m` gives
+/// wanted frontages, which are stretched to the axis.
 pub fn sites(
     frame: &OrientedBox,
-    depth_m: f64,
+    rows: usize,
     count: usize,
     mut next_m: impl FnMut() -> f64,
 ) -> Vec<Site> {
-    let rows = if frame.short_m() >= TWO_ROWS_DEPTHS * depth_m && count > 1 { 2 } else { 1 };
+    let (rows, count) = (rows.max(1), count.max(1));
     let length = frame.long_m();
     let cuts: Vec<Vec<f64>> = (0..rows)
         .map(|row| {

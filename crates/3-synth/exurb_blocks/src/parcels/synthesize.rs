@@ -67,7 +67,10 @@ pub fn synthesize(ground: &Polygon, input: &Input, params: &Params, rng: &mut Rn
     let mut resting: Vec<u32> = Vec::new();
     let axis = axis_voronoi::suits(ground, depth_m).filter(|_| !partly);
     let sites = if let Some(frame) = axis {
-        axis_voronoi::sites(&frame, depth_m, count, next_m)
+        let rows = axis_voronoi::rows(&frame, depth_m);
+        let by_frontage = rows as f64 * frame.long_m() / mean_m;
+        let count = (count as f64).clamp(by_frontage / 1.5, by_frontage * 1.5).round();
+        axis_voronoi::sites(&frame, rows.min(count as usize), count as usize, next_m)
     } else {
         let rings: Vec<Ring> = ground.rings().map(Ring::of).collect();
         let rows: Vec<Vec<Stretch>> = rings
