@@ -80,6 +80,10 @@ impl Recipe {
                 "`{}` works on a city; begin the recipe with `[city]` or with a step that makes streets",
                 card.name()
             ))),
+            (None, None) => Err(Error::Recipe(
+                "the recipe has neither `[[steps]]` nor a `[city]`: there is nothing to make"
+                    .to_owned(),
+            )),
             (None, _) => {
                 let target = self.target.clone().unwrap_or(Target::Size(Default::default()));
                 target::begin(&target, examples.first().map(|e| &*e.city), folder)

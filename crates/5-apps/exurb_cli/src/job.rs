@@ -58,7 +58,7 @@ impl Watch {
     fn start(run: &Run, options: &RunOptions) -> Self {
         let ended = Arc::new(AtomicBool::new(false));
         let (run, limit, end) = (run.clone(), options.max_memory, ended.clone());
-        let bar = (!options.quiet && std::io::stderr().is_terminal()).then(bar);
+        let bar = (!options.quiet && std::io::stderr().is_terminal()).then(ProgressBar::no_length);
         let thread = thread::spawn(move || {
             let mut over = None;
             while !end.load(Ordering::Relaxed) {
@@ -89,15 +89,16 @@ impl Watch {
     }
 }
 
-fn bar() -> ProgressBar {
-    let bar = ProgressBar::new(0);
-    let style = ProgressStyle::with_template("{spinner} {msg} {bar:30} {elapsed}");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    bar
-}
-
+/// A bar where the phase tells how much there is to do, else its name and the time alone.
 fn show(bar: &ProgressBar, run: &Run) {
     let (phase, done, total) = run.status();
+    let template = match total {
+        0 => "{spinner} {msg} {elapsed}",
+        _ => "{spinner} {msg} {bar:30} {percent} % {elapsed}",
+    };
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style);
+    }
     bar.set_message(phase);
     bar.set_length(u64::from(total));
     bar.set_position(u64::from(done));

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use exurb_city::City;
 use exurb_measure::Info;
-use exurb_recipe::Seconds;
+use exurb_recipe::{Recipe, Seconds};
 use serde_json::json;
 
 use crate::options::RunOptions;
@@ -41,6 +41,11 @@ pub fn report(
         text.push_str(&format!("written         {}\n", file.display()));
     }
     report::result(&text)
+}
+
+/// Prints the recipe of a dry run.
+pub fn recipe(recipe: &Recipe, options: &RunOptions) -> Result<(), Problem> {
+    if options.json { report::json(&json!(recipe)) } else { report::result(&recipe.print()?) }
 }
 
 /// Tells which files were written.

@@ -4,13 +4,17 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
-use exurb_operation::AnyOperation;
+use exurb_operation::{AnyOperation, Card, Run};
 use exurb_recipe::{Export, Inputs, Recipe, Registry, Source, Step, Within, needs_city};
 
 use crate::options::{ExampleOptions, RunOptions, SeedOptions, TargetOptions};
 use crate::output::Outputs;
 use crate::problem::Problem;
-use crate::{flags, job, report, summary};
+use crate::{flags, job, summary};
+
+/// What `auto` does in a stage.
+const AUTO: [(&str, &[&str]); 2] =
+    [("blocks", &["blocks parcels", "blocks footprints"]), ("buildings", &["buildings extrude"])];
 
 /// The file to write; a dry run writes none.
 #[derive(Args)]
@@ -35,67 +39,160 @@ struct ScopeOptions {
     blocks: Option<Vec<u32>>,
 }
 
+/// What a command word stands for: one operation with its parameters, or `auto`, several in order
+/// with none.
+struct Method<'a> {
+    name: &'static str,
+    about: String,
+    operations: Vec<&'a dyn AnyOperation>,
+}
+
+/// The methods of a stage as commands see them: its operations, then `auto` where several make a
+/// whole.
+fn methods<'a>(stage: &str, registry: &'a Registry) -> Vec<Method<'a>> {
+    let own = registry.iter().filter(|operation| operation.card().stage == stage);
+    let mut methods: Vec<Method> = own
+        .map(|operation| {
+            let card = operation.card();
+            let about = sentence(card.summary);
+            Method { name: card.method, about, operations: vec![operation] }
+        })
+        .collect();
+    for (_, names) in AUTO.into_iter().filter(|(of, _)| *of == stage) {
+        let operations: Vec<_> = names.iter().filter_map(|name| registry.find(name).ok()).collect();
+        let about = format!("The usual methods in order: {}", names.join(", then "));
+        methods.push(Method { name: "auto", about, operations });
+    }
+    methods
+}
+
+impl Method<'_> {
+    fn cards(&self) -> impl Iterator<Item = Card> {
+        self.operations.iter().map(|operation| operation.card())
+    }
+
+    fn needs_city(&self) -> bool {
+        self.cards().next().is_some_and(|card| needs_city(&card))
+    }
+
+    fn needs_example(&self) -> bool {
+        self.cards().any(|card| card.needs_example)
+    }
+
+    /// The operation whose parameters are flags.
+    fn single(&self) -> Option<&dyn AnyOperation> {
+        if self.name == "auto" { None } else { self.operations.first().copied() }
+    }
+
+    fn command(&self) -> Command {
+        let sources: Vec<&str> = self.cards().map(|card| card.source).collect();
+        let mut command =
+            Command::new(self.name).after_help(format!("Source: {}", sources.join("; ")));
+        if self.needs_city() {
+            let help = "City to work on, any readable format";
+            let city = Arg::new("city").value_name("CITY").required(true).help(help);
+            command = command.arg(city.value_parser(clap::value_parser!(PathBuf)));
+        }
+        command = MadeOptions::augment_args(command);
+        if let Some(operation) = self.single() {
+            command = flags::add(command, &operation.schema(), "Parameters");
+        }
+        command = ExampleOptions::augment_args(command);
+        command = if self.needs_city() {
+            ScopeOptions::augment_args(command)
+        } else {
+            TargetOptions::augment_args(command)
+        };
+        // The shared options bring their own doc lines, which must not stand for the method's.
+        RunOptions::augment_args(SeedOptions::augment_args(command)).about(self.about.clone())
+    }
+
+    /// The steps that the arguments ask for.
+    fn steps(&self, matches: &ArgMatches, scope: &Within) -> Result<Vec<Step>, Problem> {
+        let mut steps: Vec<Step> = self.cards().map(|card| Step::new(card.name())).collect();
+        if let (Some(operation), [step]) = (self.single(), &mut steps[..]) {
+            step.params = flags::document(matches, &operation.schema()).map_err(Problem::usage)?;
+            operation.check(&step.params.clone().into())?;
+        }
+        steps.iter_mut().for_each(|step| step.scope = scope.clone());
+        Ok(steps)
+    }
+
+    /// The recipe that the arguments ask for.
+    fn recipe(&self, matches: &ArgMatches, registry: &Registry) -> Result<Recipe, Problem> {
+        let SeedOptions { seed, .. } = given(matches)?;
+        let examples = given::<ExampleOptions>(matches)?.sources();
+        let mut recipe = Recipe { seed, examples, ..Recipe::default() };
+        let mut scope = Within::All;
+        if self.needs_city() {
+            recipe.city = matches.get_one::<PathBuf>("city").map(Source::new);
+            scope = match given(matches)? {
+                ScopeOptions { scope: Some(file), .. } => Within::File(file),
+                ScopeOptions { blocks: Some(blocks), .. } => Within::Blocks(blocks),
+                _ => Within::All,
+            };
+        } else if recipe.examples.is_empty() && self.needs_example() {
+            let message =
+                format!("{} learns from an example; name one with --example FILE", self.name);
+            return Err(Problem::usage(message));
+        } else {
+            recipe.target = Some(given::<TargetOptions>(matches)?.target());
+        }
+        recipe.steps = self.steps(matches, &scope)?;
+        let MadeOptions { output, to } = given(matches)?;
+        recipe.exports = output
+            .into_iter()
+            .map(|file| Export { file, to: to.clone(), ..Export::default() })
+            .collect();
+        recipe.normalise(registry);
+        Ok(recipe)
+    }
+}
+
+/// The words with a capital at their head.
+fn sentence(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or(String::new(), |head| head.to_uppercase().chain(letters).collect())
+}
+
+/// A group of options as it was given.
+fn given<T: FromArgMatches>(matches: &ArgMatches) -> Result<T, Problem> {
+    T::from_arg_matches(matches).map_err(|e| Problem::usage(e.to_string()))
+}
+
 /// The command of a stage, with its methods.
 pub fn stage(stage: &'static str, about: &'static str, registry: &Registry) -> Command {
-    let methods = registry.iter().filter(|o| o.card().stage == stage).map(method);
     Command::new(stage)
         .about(about)
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommand_value_name("METHOD")
         .subcommand_help_heading("Methods")
-        .subcommands(methods)
-}
-
-fn method(operation: &dyn AnyOperation) -> Command {
-    let card = operation.card();
-    let mut command = Command::new(card.method).after_help(format!("Source: {}", card.source));
-    if needs_city(&card) {
-        let help = "City to work on, any readable format";
-        let city = Arg::new("city").value_name("CITY").required(true).help(help);
-        command = command.arg(city.value_parser(clap::value_parser!(PathBuf)));
-    }
-    command = MadeOptions::augment_args(command);
-    command = flags::add(command, &operation.schema(), "Parameters");
-    command = ExampleOptions::augment_args(command);
-    command = if needs_city(&card) {
-        ScopeOptions::augment_args(command)
-    } else {
-        TargetOptions::augment_args(command)
-    };
-    // The shared options bring their own doc lines, which must not stand for the method's.
-    RunOptions::augment_args(SeedOptions::augment_args(command)).about(card.summary)
+        .subcommands(methods(stage, registry).iter().map(Method::command))
 }
 
 /// Runs the method that was asked for.
 pub fn run(stage: &str, matches: &ArgMatches, registry: &Registry) -> Result<(), Problem> {
-    let Some((method, matches)) = matches.subcommand() else {
-        return Err(Problem::usage(format!("no method was given; see exurb {stage} --help")));
+    let (name, matches) = matches.subcommand().unwrap_or(("", matches));
+    let methods = methods(stage, registry);
+    let Some(method) = methods.iter().find(|method| method.name == name) else {
+        return Err(Problem::usage(format!("there is no method `{stage} {name}`")));
     };
-    let operation = registry.find(&format!("{stage} {method}")).map_err(Problem::usage)?;
-    let usage = |e: clap::Error| Problem::usage(e.to_string());
-    let made_options = MadeOptions::from_arg_matches(matches).map_err(usage)?;
-    let seed_options = SeedOptions::from_arg_matches(matches).map_err(usage)?;
-    let options = RunOptions::from_arg_matches(matches).map_err(usage)?;
-    let mut recipe = recipe(operation, matches, registry, seed_options.seed)?;
-    if let Some(file) = &made_options.output {
-        let (file, to) = (file.clone(), made_options.to.clone());
-        recipe.exports.push(Export { file, to, ..Export::default() });
-    }
-
+    let options: RunOptions = given(matches)?;
+    let mut recipe = method.recipe(matches, registry)?;
     let here = Path::new("");
-    if seed_options.dry_run {
+    if given::<SeedOptions>(matches)?.dry_run {
         job::work(&options, recipe.seed, |run| {
             let mut inputs = recipe.read(here, registry, run)?;
-            examples(&mut recipe, &mut inputs, operation, run)
+            recall(&mut recipe, &mut inputs, method, run)
         })?;
-        return report::result(&recipe.print()?);
+        return summary::recipe(&recipe, &options);
     }
     let exports = recipe.exports.clone();
     let (made, example) = job::work(&options, recipe.seed, |run| {
         let outputs = Outputs::prepare(&exports, here)?;
         let mut inputs = recipe.read(here, registry, run)?;
-        examples(&mut recipe, &mut inputs, operation, run)?;
+        recall(&mut recipe, &mut inputs, method, run)?;
         let example = inputs.examples.first().map(|e| e.city.clone());
         let mut made = recipe.make(inputs, here, registry, run)?;
         made.seconds.write = outputs.write(&made.city, run)?;
@@ -105,60 +202,24 @@ pub fn run(stage: &str, matches: &ArgMatches, registry: &Registry) -> Result<(),
     summary::report(&made.city, example.as_deref(), made.seconds, &files, &options)
 }
 
-/// The recipe of one step that the arguments ask for.
-fn recipe(
-    operation: &dyn AnyOperation,
-    matches: &ArgMatches,
-    registry: &Registry,
-    seed: u64,
-) -> Result<Recipe, Problem> {
-    let card = operation.card();
-    let usage = |e: clap::Error| Problem::usage(e.to_string());
-    let examples = ExampleOptions::from_arg_matches(matches).map_err(usage)?.sources();
-    let mut step = Step::new(card.name());
-    step.params = flags::document(matches, &operation.schema()).map_err(Problem::usage)?;
-    operation.check(&step.params.clone().into())?;
-    let mut recipe = Recipe { seed, examples, ..Recipe::default() };
-    if needs_city(&card) {
-        let city: Option<&PathBuf> = matches.get_one("city");
-        recipe.city = city.map(Source::new);
-        step.scope = match ScopeOptions::from_arg_matches(matches).map_err(usage)? {
-            ScopeOptions { scope: Some(file), .. } => Within::File(file),
-            ScopeOptions { blocks: Some(blocks), .. } => Within::Blocks(blocks),
-            _ => Within::All,
-        };
-    } else {
-        recipe.target = Some(TargetOptions::from_arg_matches(matches).map_err(usage)?.target());
-        if recipe.examples.is_empty() && card.needs_example {
-            let message =
-                format!("`{}` needs an example; name one with --example FILE", card.name());
-            return Err(Problem::usage(message));
-        }
-    }
-    recipe.steps.push(step);
-    recipe.normalise(registry);
-    Ok(recipe)
-}
-
 /// Where no example was named, a city's own ones are looked for beside it. A city that was imported
 /// is its own example; so is, with a warning, one whose examples are gone.
-fn examples(
+fn recall(
     recipe: &mut Recipe,
     inputs: &mut Inputs,
-    operation: &dyn AnyOperation,
-    run: &exurb_operation::Run,
+    method: &Method<'_>,
+    run: &Run,
 ) -> Result<(), Problem> {
     let Some(city) = &recipe.city else { return Ok(()) };
     let folder = city.file.parent().unwrap_or(Path::new("")).to_owned();
     let Err(missing) = recipe.recall_examples(inputs, &folder, run)? else { return Ok(()) };
-    let card = operation.card();
     let message = format!(
         "the city was made from {missing}, which is neither beside it nor in the current folder; \
          name it with --example FILE"
     );
-    if card.needs_example {
+    if method.needs_example() {
         return Err(Problem::usage(message));
     }
-    run.warn(format!("{message}. {} learns from the city itself meanwhile", card.name()));
+    run.warn(format!("{message}. {} learns from the city itself meanwhile", method.name));
     Ok(())
 }

@@ -8,7 +8,7 @@ use exurb_recipe::{Export, Recipe, Registry};
 use crate::options::RunOptions;
 use crate::output::{self, Outputs};
 use crate::problem::Problem;
-use crate::{job, report, summary};
+use crate::{job, summary};
 
 #[derive(Args)]
 struct Options {
@@ -49,7 +49,7 @@ pub fn run(matches: &ArgMatches, registry: &Registry) -> Result<(), Problem> {
     let folder = options.recipe.parent().unwrap_or(Path::new(""));
     if options.dry_run {
         job::work(&running, recipe.seed, |run| Ok(recipe.read(folder, registry, run)?))?;
-        return report::result(&recipe.print()?);
+        return summary::recipe(&recipe, &running);
     }
     perform(&recipe, folder, &options.output, &running, registry)
 }

@@ -57,6 +57,7 @@ fn mistakes_in_recipes_are_named_with_their_line() {
             format!("{recipe}contination = 0.3\n"),
             "line 8: streets grow: there is no parameter `contination`",
         ),
+        ("exurb = 1\n".to_owned(), "nothing to make"),
         (recipe.replace("streets grow", "blocks parcels"), "`blocks parcels` works on a city"),
         (recipe.replace("builtin:grid", "missing.osm"), "missing.osm: there is no such file"),
     ] {
