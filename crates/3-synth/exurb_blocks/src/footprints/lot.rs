@@ -7,6 +7,9 @@ const FRONT_SLACK_M: f64 = 0.3;
 /// Fronts turning more than this are two, in radians (35°).
 const CORNER_RAD: f64 = 0.6;
 
+/// A front around the corner is at least this long, in metres.
+const LEAST_RUN_M: f64 = 6.0;
+
 /// A parcel and its fronts.
 #[derive(Clone, Debug)]
 pub struct Lot {
@@ -26,6 +29,8 @@ pub struct Lot {
     pub runs: Vec<Run>,
     /// Which of them is the main one.
     pub main: usize,
+    /// Where the front begins and ends, all of it together.
+    pub ends: (Vec2, Vec2),
 }
 
 /// A nearly straight front.
@@ -44,6 +49,10 @@ impl Run {
         self.from.distance(self.to)
     }
 
+    fn direction(&self) -> Vec2 {
+        (self.to - self.from).normalize_or_zero()
+    }
+
     /// Two points of the line `distance_m` into the parcel.
     pub fn line_at(&self, distance_m: f64) -> (Vec2, Vec2) {
         let inward = (self.to - self.from).normalize_or_zero().perp();
@@ -56,10 +65,22 @@ impl Lot {
     /// The lot of a parcel whose block has the kerb `kerb`; `None` when it has no front.
     pub fn of(polygon: &Polygon, kerb: &SegmentGrid, pavement_m: f64) -> Option<Self> {
         let chain = longest_front(polygon, kerb, pavement_m + FRONT_SLACK_M)?;
-        let runs = runs(&chain);
-        let main = (0..runs.len())
-            .max_by(|i, j| runs[*i].length_m().total_cmp(&runs[*j].length_m()).then(j.cmp(i)))?;
-        let run = runs[main];
+        let ends = (chain[0], chain[chain.len() - 1]);
+        let all = runs(&chain);
+        let longer =
+            |i: &usize, j: &usize| all[*i].length_m().total_cmp(&all[*j].length_m()).then(j.cmp(i));
+        let main = (0..all.len()).max_by(longer)?;
+        let run = all[main];
+        // Only streets that meet the main one at an outer corner are fronts, too: around the tip of
+        // a dead end the others lead away from the lot.
+        let meets = |a: &Run, b: &Run| {
+            let turn = a.direction().perp_dot(b.direction());
+            turn > trig::sin(CORNER_RAD) && a.length_m().min(b.length_m()) > LEAST_RUN_M
+        };
+        let before = main.checked_sub(1).filter(|i| meets(&all[*i], &run)).map(|i| all[i]);
+        let after = all.get(main + 1).filter(|r| meets(&run, r)).copied();
+        let runs: Vec<Run> = before.into_iter().chain([run]).chain(after).collect();
+        let main = usize::from(before.is_some());
         let along = (run.to - run.from).normalize_or_zero();
         if along == Vec2::ZERO {
             return None;
@@ -79,17 +100,13 @@ impl Lot {
             bulge_m: run.bulge_m,
             runs,
             main,
+            ends,
         })
     }
 
     /// A point given in x and y.
     pub fn world(&self, p: Vec2) -> Vec2 {
         self.origin + self.along * p.x + self.along.perp() * p.y
-    }
-
-    /// Where the front begins and ends, all runs together.
-    pub fn ends(&self) -> (Vec2, Vec2) {
-        (self.runs[0].from, self.runs[self.runs.len() - 1].to)
     }
 
     /// Does it lie at a corner of its block?

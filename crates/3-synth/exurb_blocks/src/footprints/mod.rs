@@ -184,7 +184,7 @@ impl<'a> Site<'a> {
         let mut last: Option<(exurb_geom::Vec2, bool)> = None;
         for (parcel, lot) in lots {
             let empty = rng.random::<f64>() < style.empty_share;
-            let (from, to) = lot.ends();
+            let (from, to) = lot.ends;
             let before =
                 last.filter(|(end, _)| end.distance(from) < 0.5).map(|(_, touches)| touches);
             let depth = lot.depth_at(0.0) + block.pavement_m;
@@ -267,7 +267,7 @@ fn in_order<'p>(block: &Block, parcels: &[&'p Parcel]) -> Vec<(&'p Parcel, Lot)>
         .filter(|p| p.land_use.as_deref().is_none_or(|class| !area::is_open(class)))
         .filter_map(|parcel| {
             let lot = Lot::of(&parcel.polygon, &kerb, block.pavement_m)?;
-            let start = lot.ends().0;
+            let start = lot.ends.0;
             let places = rings.iter().enumerate().map(|(r, ring)| (r, ring.nearest(start)));
             let (ring, place) = places.min_by(|a, b| a.1.distance_m.total_cmp(&b.1.distance_m))?;
             Some((ring, place.at_m, *parcel, lot))

@@ -97,7 +97,7 @@ fn around_corner(lot: &Lot, wish: &Wish<'_>) -> Option<Polygon> {
 
 /// Thin strips along slanting borders are cut off.
 fn without_spikes(polygon: Polygon) -> Option<Polygon> {
-    const HALF_STRIP_M: f64 = 0.9;
+    const HALF_STRIP_M: f64 = 1.4;
     let core = offset::inset(&polygon, HALF_STRIP_M).into_iter().next()?;
     let opened = offset::inset(&core, -HALF_STRIP_M).into_iter().next()?;
     // Growing back may round a corner over the border by a little.
