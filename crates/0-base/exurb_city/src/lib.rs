@@ -13,6 +13,8 @@
 //! | [`block`] | blocks: the faces of the graph less the carriageways |
 //! | [`parcel`], [`building`], [`feature`], [`area`] | what lies in the blocks |
 //! | [`provenance`] | origin and source of elements |
+//! | [`mod@simplify`] | dual carriageways → one street, small roundabouts → junctions |
+//! | [`hierarchy`] | levels of streets, and strokes |
 //! | [`laws`] | what every city keeps, and its likeness gates |
 //! | [`Edit`] | what an operation changes |
 
@@ -26,12 +28,14 @@ mod densest_square;
 mod draft;
 mod edit;
 pub mod feature;
+pub mod hierarchy;
 pub mod laws;
 mod lonlat_bbox;
 pub mod parcel;
 mod placing;
 pub mod provenance;
 pub mod role;
+pub mod simplify;
 pub mod street_graph;
 pub mod street_map;
 
@@ -42,9 +46,11 @@ pub use city::{City, Metadata};
 pub use draft::{Draft, DraftError, ImportOptions, Imported, Part};
 pub use edit::Edit;
 pub use feature::{Feature, FeatureShape};
+pub use hierarchy::{Hierarchy, Stroke, assign_levels, strokes};
 pub use laws::{LawReport, laws};
 pub use parcel::Parcel;
 pub use provenance::{Origin, Provenance};
 pub use role::{Class, Role};
+pub use simplify::{Simplify, simplify};
 pub use street_graph::{Junction, Street, StreetGraph};
 pub use street_map::{StreetMap, Way};

@@ -177,15 +177,19 @@ pub fn from_lines(lines: impl IntoIterator<Item = (Vec<GridPoint>, Street)>) -> 
     graph
 }
 
-/// Dissolves every node of degree 2 between streets that continue each other. Cut ends stay.
+/// Dissolves every node of degree 2 between streets that continue each other. Cut ends stay. What
+/// does not make a node, such as lanes and width, is that of the longer of the two.
 pub fn dissolve_all(graph: &mut StreetGraph) {
     let nodes: Vec<NodeId> = graph.nodes().map(|(id, _)| id).collect();
     for node in nodes {
         let [a, b] = graph.darts(node) else { continue };
         let (a, b) = (*a, *b);
-        let (s, t) = (&graph.edge(a.edge()).data, &graph.edge(b.edge()).data);
-        if !graph.node(node).data.cut && s.continues(t) && same_direction(graph, a, b) {
-            graph.dissolve(node);
+        let (s, t) = (graph.edge(a.edge()), graph.edge(b.edge()));
+        if !graph.node(node).data.cut && s.data.continues(&t.data) && same_direction(graph, a, b) {
+            let longer = if s.length_m() >= t.length_m() { &s.data } else { &t.data }.clone();
+            if let Some(joined) = graph.dissolve(node) {
+                graph.edge_mut(joined).data = longer;
+            }
         }
     }
 }
