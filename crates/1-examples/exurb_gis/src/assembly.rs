@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use exurb_city::{
     Area, Block, BlockClass, Building, City, Draft, Feature, FeatureShape, ImportOptions, Imported,
-    Junction, Metadata, Parcel, Provenance, Role, StreetGraph, Way,
+    Metadata, Parcel, Provenance, Role, StreetGraph, Way,
 };
-use exurb_geom::{Frame, GridPoint, Polygon};
-use exurb_graph::EdgeId;
+use exurb_geom::{Bounds, Frame, GridPoint, Polygon};
+use exurb_graph::{EdgeId, NodeId};
 
 use crate::Error;
 use crate::layers::{self, IntersectionRow, Layer, StreetRow, TargetRow};
@@ -112,7 +112,8 @@ impl Assembly {
 
     /// The city. As it was written, when nothing else is asked for and every street still ends at
     /// its intersections; else the streets are noded and the blocks derived anew.
-    pub fn finish(self, options: &ImportOptions) -> Result<Imported, Error> {
+    pub fn finish(mut self, options: &ImportOptions) -> Result<Imported, Error> {
+        self.number();
         if self.was_drawn_in() {
             let mut imported = self.derive_anew(options)?;
             imported.warnings.push(
@@ -125,6 +126,22 @@ impl Assembly {
             return self.derive_anew(options);
         }
         Ok(Imported { city: self.into_city()?, warnings: Vec::new() })
+    }
+
+    /// Rows that another program added have no number yet.
+    fn number(&mut self) {
+        fn number<T>(rows: &mut [T], id: fn(&mut T) -> &mut u32) {
+            let mut last = rows.iter_mut().map(|row| *id(row)).max().unwrap_or(0);
+            for row in rows.iter_mut().map(id).filter(|id| **id == 0) {
+                last = last.saturating_add(1);
+                *row = last;
+            }
+        }
+        number(&mut self.parcels, |p| &mut p.id);
+        number(&mut self.buildings, |b| &mut b.id);
+        number(&mut self.features, |f| &mut f.id);
+        number(&mut self.water, |a| &mut a.id);
+        number(&mut self.land_use, |a| &mut a.id);
     }
 
     fn nodes(&self) -> BTreeMap<u32, usize> {
@@ -168,10 +185,8 @@ impl Assembly {
             });
         }
         let mut graph = StreetGraph::new();
-        let mut ids = Vec::with_capacity(self.intersections.len());
-        for (row, at) in self.intersections {
-            ids.push(graph.add_node(at, row.junction));
-        }
+        let place = |(row, at): (IntersectionRow, _)| graph.add_node(at, row.junction);
+        let ids: Vec<NodeId> = self.intersections.into_iter().map(place).collect();
         let mut ways = Vec::new();
         let mut new_id: BTreeMap<u32, EdgeId> = BTreeMap::new();
         for (row, line) in self.streets {
@@ -248,12 +263,9 @@ fn empty_area(polygon: Polygon) -> Area {
 }
 
 /// The rectangle around what there is, for a file whose target is gone.
-fn bounds_of(
-    streets: &exurb_graph::Graph<Junction, exurb_city::Street>,
-    buildings: &[Building],
-) -> Option<Polygon> {
+fn bounds_of(streets: &StreetGraph, buildings: &[Building]) -> Option<Polygon> {
     let lines = streets.edges().flat_map(|(_, edge)| edge.line().iter().copied());
     let walls = buildings.iter().flat_map(|b| b.polygon.exterior().iter().copied());
-    let bounds = exurb_geom::Bounds::of(lines.chain(walls))?.grown(1.0);
+    let bounds = Bounds::of(lines.chain(walls))?.grown(1.0);
     Some(Polygon::rectangle(GridPoint::round(bounds.min), GridPoint::round(bounds.max)))
 }

@@ -157,6 +157,24 @@ pub const NAMES: [&str; 9] = [
     "target",
 ];
 
+/// The names of a layer's columns, in order.
+pub fn column_names(layer: &str) -> Vec<&'static str> {
+    fn names<T>(layer: &Layer<T>) -> Vec<&'static str> {
+        layer.columns().map(|column| column.name).collect()
+    }
+    match layer {
+        "streets" => names(&STREETS),
+        "intersections" => names(&INTERSECTIONS),
+        "blocks" => names(&BLOCKS),
+        "parcels" => names(&PARCELS),
+        "buildings" => names(&BUILDINGS),
+        "features" => names(&FEATURES),
+        "water" => names(&WATER),
+        "land_use" => names(&LAND_USE),
+        _ => names(&TARGET),
+    }
+}
+
 /// Streets.
 pub static STREETS: Layer<StreetRow> = Layer {
     name: "streets",
@@ -165,7 +183,7 @@ pub static STREETS: Layer<StreetRow> = Layer {
 };
 
 const STREET: &[Column<StreetRow>] = &[
-    column!("id", Integer, |r| Value::Int(r.id.into()), |r, v| r.id = v.integer()?),
+    column!("id", Integer, |r| Value::Int(r.id.into()), |r, v| r.id = id(v)?),
     column!("from", Integer, |r| Value::reference(r.ends[0]), |r, v| r.ends[0] = id(v)?),
     column!("to", Integer, |r| Value::reference(r.ends[1]), |r, v| r.ends[1] = id(v)?),
     column!("class", Text, |r| r.street.class.as_str().into(), |r, v| r.street.class =
@@ -197,7 +215,7 @@ pub static INTERSECTIONS: Layer<IntersectionRow> =
     Layer { name: "intersections", geometry: GeometryType::Point, groups: &[INTERSECTION] };
 
 const INTERSECTION: &[Column<IntersectionRow>] = &[
-    column!("id", Integer, |r| Value::Int(r.id.into()), |r, v| r.id = v.integer()?),
+    column!("id", Integer, |r| Value::Int(r.id.into()), |r, v| r.id = id(v)?),
     column!("kind", Text, |r| r.kind().into()),
     column!("degree", Integer, |r| Value::Int(r.degree as i64)),
     column!("z", Real, |r| r.junction.z_m.into(), |r, v| r.junction.z_m =
@@ -210,7 +228,7 @@ pub static BLOCKS: Layer<Block> =
     Layer { name: "blocks", geometry: GeometryType::Polygon, groups: &[BLOCK, Traced::COLUMNS] };
 
 const BLOCK: &[Column<Block>] = &[
-    column!("id", Integer, |b| Value::Int(b.id.into()), |b, v| b.id = v.integer()?),
+    column!("id", Integer, |b| Value::Int(b.id.into()), |b, v| b.id = id(v)?),
     column!("area", Real, |b| b.polygon.area_m2().into()),
     column!("face_area", Real, |b| b.face_area_m2.into(), |b, v| b.face_area_m2 =
         v.or(b.polygon.area_m2(), Value::real)?),
@@ -228,7 +246,7 @@ pub static PARCELS: Layer<Parcel> =
     Layer { name: "parcels", geometry: GeometryType::Polygon, groups: &[PARCEL, Traced::COLUMNS] };
 
 const PARCEL: &[Column<Parcel>] = &[
-    column!("id", Integer, |p| Value::Int(p.id.into()), |p, v| p.id = v.integer()?),
+    column!("id", Integer, |p| Value::Int(p.id.into()), |p, v| p.id = id(v)?),
     column!("block", Integer, |p| Value::reference(p.block), |p, v| p.block = id(v)?),
     column!("area", Real, |p| p.polygon.area_m2().into()),
     column!("street_access", Boolean, |p| Value::Bool(p.street_access), |p, v| {
@@ -245,7 +263,7 @@ pub static BUILDINGS: Layer<Building> = Layer {
 };
 
 const BUILDING: &[Column<Building>] = &[
-    column!("id", Integer, |b| Value::Int(b.id.into()), |b, v| b.id = v.integer()?),
+    column!("id", Integer, |b| Value::Int(b.id.into()), |b, v| b.id = id(v)?),
     column!("block", Integer, |b| Value::reference(b.block), |b, v| b.block = id(v)?),
     column!("parcel", Integer, |b| Value::reference(b.parcel), |b, v| b.parcel = id(v)?),
     column!("height", Real, |b| b.height_m.into(), |b, v| b.height_m = v.optional(Value::real)?),
@@ -264,8 +282,8 @@ pub static FEATURES: Layer<Feature> =
     Layer { name: "features", geometry: GeometryType::Any, groups: &[FEATURE, Traced::COLUMNS] };
 
 const FEATURE: &[Column<Feature>] = &[
-    column!("id", Integer, |f| Value::Int(f.id.into()), |f, v| f.id = v.integer()?),
-    column!("kind", Text, |f| (&*f.kind).into(), |f, v| f.kind = v.shared()?),
+    column!("id", Integer, |f| Value::Int(f.id.into()), |f, v| f.id = id(v)?),
+    column!("kind", Text, |f| (&*f.kind).into(), |f, v| f.kind = v.shared().unwrap_or_default()),
     column!("block", Integer, |f| Value::reference(f.block), |f, v| f.block = id(v)?),
 ];
 
@@ -278,15 +296,15 @@ pub static LAND_USE: Layer<Area> =
     Layer { name: "land_use", geometry: GeometryType::Polygon, groups: &[AREA] };
 
 const AREA: &[Column<Area>] = &[
-    column!("id", Integer, |a| Value::Int(a.id.into()), |a, v| a.id = v.integer()?),
-    column!("class", Text, |a| (&*a.class).into(), |a, v| a.class = v.shared()?),
+    column!("id", Integer, |a| Value::Int(a.id.into()), |a, v| a.id = id(v)?),
+    column!("class", Text, |a| (&*a.class).into(), |a, v| a.class = v.shared().unwrap_or_default()),
 ];
 
 /// The modelled area.
 pub static TARGET: Layer<TargetRow> = Layer {
     name: "target",
     geometry: GeometryType::Polygon,
-    groups: &[&[column!("id", Integer, |t| Value::Int(t.id.into()), |t, v| t.id = v.integer()?)]],
+    groups: &[&[column!("id", Integer, |t| Value::Int(t.id.into()), |t, v| t.id = id(v)?)]],
 };
 
 /// What has a provenance; its three columns stand last.

@@ -1,13 +1,5 @@
-//! What a row of somebody else's file is, by its geometry, its columns and the name of its layer.
-//!
-//! | geometry | becomes | when |
-//! |---|---|---|
-//! | line | street | always, but for `highway` values that are no streets, waterways, railways and layers named so |
-//! | polygon | building | `building`, or a layer of buildings, or a height or levels |
-//! | | parcel | a layer of parcels, plots or lots; a zoning column outside a zoning layer |
-//! | | water | `natural=water`, `water`, `waterway`, or a layer of water |
-//! | | land use | `landuse`, `leisure`, `natural`, or a layer of land use or zones |
-//! | point | feature | `element`, `natural=tree`, `highway=street_lamp`, `leisure`, `amenity`, or a layer of trees or lamps |
+//! What a row of somebody else's file is, by its geometry, its columns and the name of its
+//! layer: the table in the crate's documentation.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -281,49 +273,56 @@ fn direction(attributes: &Attributes<'_>) -> (bool, bool) {
 }
 
 fn polygon(attributes: &Attributes<'_>, theme: Theme) -> Option<Kind> {
-    let word = |key: &str| attributes.word(&[key]);
-    let yes = |key: &str| word(key).is_some_and(|value| value != "no");
-    let element = word("element").unwrap_or_default();
-    if element == "block" || element == "target" || theme == Theme::Other {
-        return None;
+    match attributes.word(&["element"]).as_deref() {
+        // Derived from the streets and given by the user.
+        Some("block" | "target") => None,
+        Some("building") => Some(Kind::Building(walls(attributes))),
+        Some("parcel") => Some(Kind::Parcel(zoning(attributes))),
+        Some("water") => Some(Kind::Water(water_class(attributes))),
+        Some("land_use") => attributes.word(&["class"]).map(|class| Kind::LandUse(class.into())),
+        _ => tagged(attributes).or_else(|| {
+            let is_street = attributes.get(&["highway"]).is_some();
+            if is_street { None } else { untagged(attributes, theme) }
+        }),
     }
-    if yes("building") || yes("building:part") || element == "building" {
+}
+
+/// A polygon that says by OSM's tags what it is.
+fn tagged(attributes: &Attributes<'_>) -> Option<Kind> {
+    let is = |key: &str| attributes.word(&[key]).is_some_and(|value| value != "no");
+    if is("building") || is("building:part") {
         return Some(Kind::Building(walls(attributes)));
     }
-    if element == "parcel" {
-        return Some(Kind::Parcel(zoning(attributes)));
+    let natural = attributes.word(&["natural"]);
+    if is("water") || is("waterway") || natural.as_deref() == Some("water") {
+        return Some(Kind::Water(water_class(attributes)));
     }
-    let natural = word("natural");
-    let water = yes("water") || yes("waterway") || natural.as_deref() == Some("water");
-    if water || element == "water" {
-        let class = word("water").or_else(|| word("waterway")).or_else(|| word("class"));
-        let class = class.filter(|c| c != "yes");
-        return Some(Kind::Water(class.unwrap_or_else(|| "water".to_owned()).into()));
-    }
-    let area = ["landuse", "leisure", "natural"].iter().find_map(|key| word(key));
-    if let Some(class) = area.or_else(|| (element == "land_use").then(|| word("class"))?) {
-        return Some(Kind::LandUse(class.into()));
-    }
-    if attributes.get(&["highway"]).is_some() {
-        return None;
-    }
-    let zone = || zoning(attributes);
+    let use_of_land = attributes.word(&["landuse", "leisure", "natural"]);
+    use_of_land.map(|class| Kind::LandUse(class.into()))
+}
+
+/// A polygon that is what its layer or file is called, else what its columns suggest.
+fn untagged(attributes: &Attributes<'_>, theme: Theme) -> Option<Kind> {
+    let zone = zoning(attributes);
+    let class = || attributes.word(&["fclass", "class", "type"]).map(Arc::from);
     match theme {
         Theme::Buildings => Some(Kind::Building(walls(attributes))),
-        Theme::Parcels => Some(Kind::Parcel(zone())),
-        Theme::Water => {
-            let class = attributes.word(&["fclass", "class", "type"]);
-            Some(Kind::Water(class.unwrap_or_else(|| "water".to_owned()).into()))
-        }
+        Theme::Parcels => Some(Kind::Parcel(zone)),
+        Theme::Water => Some(Kind::Water(class().unwrap_or_else(|| "water".into()))),
         Theme::LandUse => {
-            let class = zone().or_else(|| attributes.word(&["fclass", "type"]).map(Arc::from));
-            Some(Kind::LandUse(class.unwrap_or_else(|| "unknown".into())))
+            Some(Kind::LandUse(zone.or_else(class).unwrap_or_else(|| "unknown".into())))
         }
+        Theme::Other => None,
         _ if attributes.get(&HEIGHT).or(attributes.get(&LEVELS)).is_some() => {
             Some(Kind::Building(walls(attributes)))
         }
-        _ => zone().map(|zone| Kind::Parcel(Some(zone))),
+        _ => zone.map(|zone| Kind::Parcel(Some(zone))),
     }
+}
+
+fn water_class(attributes: &Attributes<'_>) -> Arc<str> {
+    let words = ["water", "waterway", "class"].iter().filter_map(|key| attributes.word(&[key]));
+    words.into_iter().find(|word| word != "yes").map_or_else(|| "water".into(), Arc::from)
 }
 
 const HEIGHT: [&str; 6] =
@@ -416,5 +415,7 @@ mod tests {
         );
         assert_eq!(area(&[("natural", "water")], "x"), Some(Kind::Water("water".into())));
         assert_eq!(area(&[], "layer"), None);
+        assert_eq!(area(&[], "tessellation"), None);
+        assert!(matches!(area(&[("building", "house")], "blocks"), Some(Kind::Building(_))));
     }
 }

@@ -20,7 +20,8 @@ use crate::wkb::Shape;
 ///
 /// Every feature has `element`, the columns of its layer that are known, and the properties OSM
 /// would give it (`highway`, `building`, `building:levels`, `roof:shape`; `bridge`, `tunnel` and
-/// `oneway` are `yes` or absent). `bbox` is the largest box of longitude and latitude inside the
+/// `oneway` are `yes` or absent). The `id` among the properties is that of the layer, the feature's
+/// own is its number in the file. `bbox` is the largest box of longitude and latitude inside the
 /// target; what travels with the city stands in foreign members (`exurb_version`,
 /// `exurb_attribution`, ...). Streams; O(n).
 pub fn write_geojson(city: &City, out: &mut impl Write) -> io::Result<()> {
@@ -34,7 +35,7 @@ pub fn write_geojson(city: &City, out: &mut impl Write) -> io::Result<()> {
         write!(out, ",\n\"{key}\":{}", quoted(&value))?;
     }
     out.write_all(b",\n\"features\":[")?;
-    let mut writer = Features { frame: &city.frame, out, first: true };
+    let mut writer = Features { frame: &city.frame, out, count: 0 };
     writer.city(&city)?;
     out.write_all(b"\n]}\n")
 }
@@ -53,7 +54,7 @@ pub fn write_geojson_file(city: &City, path: &Path) -> Result<(), Error> {
 struct Features<'a, W> {
     frame: &'a Frame,
     out: &'a mut W,
-    first: bool,
+    count: usize,
 }
 
 impl<W: Write> Features<'_, W> {
@@ -64,7 +65,7 @@ impl<W: Write> Features<'_, W> {
             [(TargetRow { id: 1 }, Shape::Polygon(&city.target))],
         )?;
         for (row, shape) in layers::street_rows(city) {
-            self.feature("street", &layers::STREETS, &row, shape, |r, p| of_street(r, p))?;
+            self.feature("street", &layers::STREETS, &row, shape, of_street)?;
         }
         self.layer("intersection", &layers::INTERSECTIONS, layers::intersection_rows(city))?;
         let blocks = city.blocks.iter().map(|b| (b, Shape::Polygon(&b.polygon)));
@@ -112,13 +113,15 @@ impl<W: Write> Features<'_, W> {
                 (_, value) => properties.put(column.name, &value),
             }
         }
-        let comma = if std::mem::take(&mut self.first) { "" } else { "," };
+        let comma = if self.count == 0 { "" } else { "," };
+        self.count += 1;
         let geometry = self.geometry(shape);
         let properties = properties.0;
         write!(
             self.out,
-            "{comma}\n{{\"type\":\"Feature\",\"properties\":{{{properties}}},\
-             \"geometry\":{geometry}}}"
+            "{comma}\n{{\"type\":\"Feature\",\"id\":{},\"properties\":{{{properties}}},\
+             \"geometry\":{geometry}}}",
+            self.count
         )
     }
 

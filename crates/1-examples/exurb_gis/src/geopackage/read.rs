@@ -68,21 +68,8 @@ pub(crate) fn read_database(
 }
 
 fn read_own(db: &Connection, file: &str, assembly: &mut Assembly) -> Result<(), Error> {
-    let names = |layer: &str| -> Vec<&'static str> {
-        match layer {
-            "streets" => layers::STREETS.columns().map(|c| c.name).collect(),
-            "intersections" => layers::INTERSECTIONS.columns().map(|c| c.name).collect(),
-            "blocks" => layers::BLOCKS.columns().map(|c| c.name).collect(),
-            "parcels" => layers::PARCELS.columns().map(|c| c.name).collect(),
-            "buildings" => layers::BUILDINGS.columns().map(|c| c.name).collect(),
-            "features" => layers::FEATURES.columns().map(|c| c.name).collect(),
-            "water" => layers::WATER.columns().map(|c| c.name).collect(),
-            "land_use" => layers::LAND_USE.columns().map(|c| c.name).collect(),
-            _ => layers::TARGET.columns().map(|c| c.name).collect(),
-        }
-    };
     for layer in layers::NAMES {
-        read_own_layer(db, file, layer, &names(layer), assembly)?;
+        read_own_layer(db, file, layer, &layers::column_names(layer), assembly)?;
     }
     Ok(())
 }

@@ -90,6 +90,22 @@ fn a_street_drawn_elsewhere_becomes_part_of_the_graph() {
 }
 
 #[test]
+fn a_building_drawn_elsewhere_gets_a_number() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, _) = written(&sample::grid_city(2), folder.path(), "a.gpkg");
+    let db = Connection::open(&path).unwrap();
+    db.execute_batch(
+        "DROP TRIGGER rtree_buildings_geom_insert;
+         INSERT INTO buildings (geom, height) SELECT geom, 12 FROM buildings WHERE id = 1",
+    )
+    .unwrap();
+    drop(db);
+    let city = read(&path);
+    let last = city.buildings.last().unwrap();
+    assert_eq!((city.buildings.len(), last.id, last.height_m), (5, 5, Some(12.0)));
+}
+
+#[test]
 fn a_part_of_a_city_file_can_be_read() {
     let folder = tempfile::tempdir().unwrap();
     let city = sample::grid_city(8);

@@ -26,7 +26,18 @@ pub fn write_geopackage(city: &City, path: &Path) -> Result<(), Error> {
     let (beside, _) = Beside::create(path)?;
     write_database(city, beside.path())
         .map_err(|source| Error::WriteDatabase { file: path.display().to_string(), source })?;
+    forget_journals(path);
     beside.finish()
+}
+
+/// Journals that another program left beside a replaced file would be played into the new one.
+fn forget_journals(path: &Path) {
+    for ending in ["-wal", "-shm", "-journal"] {
+        let mut name = path.as_os_str().to_owned();
+        name.push(ending);
+        // Usually there is none.
+        let _ = std::fs::remove_file(name);
+    }
 }
 
 fn write_database(city: &City, path: &Path) -> rusqlite::Result<()> {
