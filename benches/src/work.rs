@@ -11,7 +11,7 @@ use std::time::Instant;
 use exurb_city::{City, ImportOptions};
 use exurb_geom::{GridPoint, Polygon, Vec2};
 use exurb_graph::Faces;
-use exurb_operation::{AnyOperation, Example, Run, Scope, erase};
+use exurb_operation::{Example, Run, Scope, erase};
 use serde_json::{Value, json};
 
 fn main() -> Result<(), Box<dyn Error>> {

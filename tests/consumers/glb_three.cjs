@@ -43,7 +43,8 @@ try {
     colours.add(pixels[i] >> 3 << 10 | pixels[i + 1] >> 3 << 5 | pixels[i + 2] >> 3);
     drawn += pixels[i] < 250 || pixels[i + 1] < 250 || pixels[i + 2] < 250;
   }
-  const names = gltf.scene.children.map((node) => node.name);
+  const names = [];
+  gltf.scene.traverse((node) => { if (node.name) names.push(node.name); });
   await send({ size: size.toArray(), names, drawn: drawn / (800 * 600), colours: colours.size,
     triangles: renderer.info.render.triangles, picture: renderer.domElement.toDataURL() });
 } catch (error) {

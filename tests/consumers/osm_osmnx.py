@@ -9,8 +9,10 @@ from cities import assert_close, elements, load, streets_m
 
 def main(xml, geojson):
     city = load(geojson)
-    graph = osmnx.graph_from_xml(xml, bidirectional=True, simplify=False, retain_all=True)
-    graph = osmnx.convert.to_undirected(graph)
+    everything = osmnx.graph_from_xml(xml, bidirectional=True, simplify=False, retain_all=True)
+    # OSMnx turns every way of a file into edges, outlines of houses as well.
+    streets = [e for e in everything.edges(keys=True) if "highway" in everything.edges[e]]
+    graph = osmnx.convert.to_undirected(everything.edge_subgraph(streets).copy())
     metres = sum(length for *_, length in graph.edges(data="length"))
     assert_close("metres of streets", metres, streets_m(city))
 
@@ -22,7 +24,8 @@ def main(xml, geojson):
     assert abs(len(degrees) - wanted) <= 0.01 * wanted, f"{len(degrees)} intersections, not {wanted}"
     largest = max(networkx.connected_components(simple), key=len)
     print(f"{len(degrees)} intersections, {cuts} cut, {len(largest) / len(simple):.4f} connected")
-    osmnx.simplify_graph(osmnx.graph_from_xml(xml, simplify=False, retain_all=True))
+    simplified = osmnx.simplify_graph(everything.edge_subgraph(streets).copy())
+    print(f"{len(simplified)} nodes after OSMnx's own simplification")
 
 
 main(*sys.argv[1:3])

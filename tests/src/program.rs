@@ -46,10 +46,13 @@ pub fn exurb<S: AsRef<std::ffi::OsStr>>(arguments: impl IntoIterator<Item = S>) 
 }
 
 /// The program built from this tree, in the profile of the tests. Cargo hands a test only the
-/// programs of its own package, so this one asks cargo for it, once.
+/// programs of its own package, so this one asks cargo for it, once. `EXURB_BIN` names another.
 fn binary() -> &'static Path {
     static BINARY: OnceLock<PathBuf> = OnceLock::new();
     BINARY.get_or_init(|| {
+        if let Some(chosen) = std::env::var_os("EXURB_BIN") {
+            return chosen.into();
+        }
         let output = Command::new(env!("CARGO"))
             .current_dir(root())
             .args(["build", "--package", "exurb_cli", "--bin", "exurb"])
