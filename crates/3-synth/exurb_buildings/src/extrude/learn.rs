@@ -1,0 +1,133 @@
+use std::sync::Arc;
+
+use exurb_city::{Block, Building, City, Roof, block};
+use exurb_geom::{BoxGrid, GridPoint, trig};
+use exurb_operation::{Example, Failure, Run};
+
+use super::Params;
+use super::likeness::{self, Likeness};
+
+/// What is known of one building of an example.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    /// What it looks like from above.
+    pub likeness: Likeness,
+    /// Height in metres.
+    pub height_m: Option<f64>,
+    /// Storeys.
+    pub levels: Option<f64>,
+    /// Roof shape.
+    pub roof: Option<Roof>,
+    /// Use.
+    pub usage: Option<Arc<str>>,
+}
+
+/// The buildings of all examples of which something is known.
+#[derive(Clone, Debug, Default)]
+pub struct Learned {
+    /// Those with height or storeys.
+    pub heights: Vec<Sample>,
+    /// Those with a roof shape.
+    pub roofs: Vec<Sample>,
+    /// Those with a use.
+    pub uses: Vec<Sample>,
+    /// Correlation of ln height between neighbours in one block, in `0..=1`.
+    pub block_share: f64,
+}
+
+/// Fewer known heights than this are exceptions that mappers noted, not a city's heights.
+const ENOUGH: usize = 5;
+/// Correlation within a block where the example cannot tell.
+const BLOCK_SHARE: f64 = 0.6;
+
+/// Learns heights, roofs and uses. O(buildings · buildings nearby).
+pub fn learn(examples: &[Example], params: &Params, run: &Run) -> Result<Learned, Failure> {
+    let mut learned = Learned::default();
+    let (mut pairs, mut count) = (Pairs::default(), 0);
+    for example in examples {
+        run.check()?;
+        let city = &*example.city;
+        let derived;
+        let blocks: &[Block] = if city.blocks.is_empty() {
+            derived = block::derive(&city.streets);
+            &derived
+        } else {
+            &city.blocks
+        };
+        let chosen: Vec<usize> = (0..city.buildings.len())
+            .filter(|i| !city.buildings[*i].is_part && city.buildings[*i].polygon.area_m2() > 5.0)
+            .collect();
+        let block_of = blocks_of(city, blocks, &chosen);
+        let likeness = likeness::of_city(city, blocks, &chosen, &block_of);
+        for ((i, likeness), block) in chosen.iter().zip(likeness).zip(block_of) {
+            let sample = sample(&city.buildings[*i], likeness, params);
+            if let (Some(height), Some(block)) = (sample.height_m, block) {
+                pairs.add((count, block), trig::ln(height.max(1.0)));
+            }
+            learned.heights.extend(sample.height_m.is_some().then(|| sample.clone()));
+            learned.roofs.extend(sample.roof.is_some().then(|| sample.clone()));
+            learned.uses.extend(sample.usage.is_some().then_some(sample));
+        }
+        count += 1;
+    }
+    learned.block_share = pairs.correlation().unwrap_or(BLOCK_SHARE);
+    if learned.heights.len() < ENOUGH {
+        learned.heights.clear();
+        run.warn("the example tells no heights; storeys follow from footprints and their density");
+    }
+    if learned.roofs.len() < ENOUGH {
+        learned.roofs.clear();
+        run.warn("the example tells no roof shapes; small and narrow houses get pitched roofs");
+    }
+    Ok(learned)
+}
+
+/// Index of the block that holds each of the chosen buildings.
+pub fn blocks_of(city: &City, blocks: &[Block], chosen: &[usize]) -> Vec<Option<usize>> {
+    let boxes = BoxGrid::of(blocks.iter().map(|b| &b.polygon));
+    let mut near = Vec::new();
+    chosen
+        .iter()
+        .map(|i| {
+            let p = GridPoint::round(city.buildings[*i].polygon.interior_point());
+            boxes.meeting(p, p, &mut near);
+            near.iter().map(|n| *n as usize).find(|n| blocks[*n].polygon.contains(p))
+        })
+        .collect()
+}
+
+fn sample(building: &Building, likeness: Likeness, params: &Params) -> Sample {
+    let sane = |v: &f64| v.is_finite() && *v > 0.5 && *v < 1000.0;
+    let levels = building.levels.filter(sane);
+    let height_m =
+        building.height_m.filter(sane).or_else(|| levels.map(|l| l * params.storey_height));
+    // `building=yes` says nothing.
+    let usage = building.usage.clone().filter(|u| &**u != "yes");
+    Sample { likeness, height_m, levels, roof: building.roof, usage }
+}
+
+/// Sums for the correlation of values within groups (one-way analysis of variance).
+#[derive(Default)]
+struct Pairs {
+    groups: std::collections::BTreeMap<(usize, usize), (f64, f64, f64)>,
+}
+
+impl Pairs {
+    fn add(&mut self, group: (usize, usize), value: f64) {
+        let entry = self.groups.entry(group).or_insert((0.0, 0.0, 0.0));
+        *entry = (entry.0 + 1.0, entry.1 + value, entry.2 + value * value);
+    }
+
+    /// Share of the variance that lies between groups; `None` with fewer than 5 groups of two.
+    fn correlation(&self) -> Option<f64> {
+        let groups: Vec<_> = self.groups.values().filter(|g| g.0 >= 2.0).collect();
+        if groups.len() < 5 {
+            return None;
+        }
+        let n: f64 = groups.iter().map(|g| g.0).sum();
+        let mean = groups.iter().map(|g| g.1).sum::<f64>() / n;
+        let within: f64 = groups.iter().map(|g| g.2 - g.1 * g.1 / g.0).sum();
+        let total: f64 = groups.iter().map(|g| g.2).sum::<f64>() - n * mean * mean;
+        (total > 1e-9).then(|| (1.0 - within / total).clamp(0.0, 1.0))
+    }
+}
