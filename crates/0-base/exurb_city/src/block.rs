@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use exurb_geom::{Bounds, GridPoint, Polygon, SegmentIndex, grid, offset, overlay};
+use exurb_geom::{Bounds, GridPoint, Polygon, Roadside, SegmentIndex, grid, offset, overlay};
 use exurb_graph::{EdgeId, Face, FaceId, Faces};
 use rayon::prelude::*;
 
@@ -71,7 +71,8 @@ pub fn bounding_edges(graph: &StreetGraph) -> Vec<bool> {
             let (a, b) = (w[0].to_m(), w[1].to_m());
             let mut hit = false;
             index.visit(Bounds { min: a.min(b), max: a.max(b) }, |e| {
-                hit |= grid::cross_properly(w[0], w[1], GridPoint::round(e.a), GridPoint::round(e.b));
+                hit |=
+                    grid::cross_properly(w[0], w[1], GridPoint::round(e.a), GridPoint::round(e.b));
                 !hit
             });
             hit
@@ -111,16 +112,9 @@ fn blocks_of_face(graph: &StreetGraph, face: &Face) -> Vec<Block> {
     }
     let mut dead_ends = face.inner.clone();
     dead_ends.sort_unstable();
-    let roads: Vec<Polygon> = sides
-        .iter()
-        .chain(&dead_ends)
-        .flat_map(|id| {
-            let edge = graph.edge(*id);
-            offset::carriageway(&edge.line_m(), edge.data.width_m() / 2.0, offset::Cap::Round)
-        })
-        .collect();
     let face_area_m2 = face.polygon.area_m2();
-    overlay::difference(&face.polygon, &roads)
+    carriageways(graph, face)
+        .taken_off(&face.polygon)
         .iter()
         // Rounding can make a kerb line touch itself.
         .flat_map(overlay::repair)
@@ -140,6 +134,37 @@ fn blocks_of_face(graph: &StreetGraph, face: &Face) -> Vec<Block> {
             }
         })
         .collect()
+}
+
+/// The ground that the streets around and inside a face take of it.
+fn carriageways(graph: &StreetGraph, face: &Face) -> Roadside {
+    let half_width_m = |id: EdgeId| graph.edge(id).data.width_m() / 2.0;
+    let mut out = Roadside::default();
+    for cycle in std::iter::once(&face.outline).chain(&face.islands) {
+        for (i, dart) in cycle.iter().enumerate() {
+            let line = graph.dart_line_m(*dart);
+            let next = cycle[(i + 1) % cycle.len()];
+            let (width_m, next_m) = (half_width_m(dart.edge()), half_width_m(next.edge()));
+            out.left_of(&line, width_m);
+            let (before, at) = (line[line.len() - 2], line[line.len() - 1]);
+            if width_m == next_m {
+                let after = graph.dart_line_m(next)[1];
+                out.bend(at, at - before, after - at, width_m);
+            } else {
+                // The end of the wider street sticks out beside the narrower one.
+                out.disc(at, width_m.max(next_m));
+            }
+        }
+    }
+    for id in &face.inner {
+        let (mut line, width_m) = (graph.edge(*id).line_m(), half_width_m(*id));
+        out.left_of(&line, width_m);
+        out.disc(line[0], width_m);
+        line.reverse();
+        out.left_of(&line, width_m);
+        out.disc(line[0], width_m);
+    }
+    out
 }
 
 /// Pairs of faces that share a street, each once with the streets between, in order.

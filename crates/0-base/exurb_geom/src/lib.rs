@@ -18,6 +18,7 @@
 //! | [`box_grid`] | boxes that meet a box, for a set that does not change |
 //! | [`segment_grid`] | segments near a segment, for linework that does not change |
 //! | [`straight_skeleton`] | what sides sweep while they move inwards: hipped roofs |
+//! | [`roadside`] | what streets take of the ground beside them |
 //! | [`segment_index`] | segments near a box, while they come and go |
 //! | [`point_index`] | points near a point, while they come and go |
 //! | [`crs`] | coordinate systems of other files to longitude and latitude |
@@ -39,10 +40,12 @@ pub mod grid;
 pub mod offset;
 pub mod oriented_box;
 pub mod overlay;
+mod plain;
 pub mod point_index;
 pub mod polygon;
 pub mod polyline;
 pub mod projection;
+pub mod roadside;
 pub mod segment_grid;
 pub mod segment_index;
 pub mod split;
@@ -59,5 +62,6 @@ pub use oriented_box::OrientedBox;
 pub use point_index::PointIndex;
 pub use polygon::Polygon;
 pub use projection::{Frame, LonLat};
+pub use roadside::Roadside;
 pub use segment_grid::SegmentGrid;
 pub use segment_index::SegmentIndex;

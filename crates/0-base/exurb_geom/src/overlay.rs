@@ -5,6 +5,7 @@
 
 use geo::{BooleanOps, Validation};
 
+use crate::plain::is_plainly_valid;
 use crate::{Polygon, convert};
 
 /// What lies in `a` and in `b`.
@@ -57,7 +58,7 @@ pub fn repair(polygon: &Polygon) -> Vec<Polygon> {
 
 /// Does no ring cross or touch itself or another, and do holes lie inside?
 pub fn is_valid(polygon: &Polygon) -> bool {
-    convert::to_geo(polygon).is_valid()
+    is_plainly_valid(polygon) || convert::to_geo(polygon).is_valid()
 }
 
 #[cfg(test)]
