@@ -1,8 +1,8 @@
 use exurb_operation::{AnyOperation, erase};
 
-use crate::grow;
+use crate::{furnish, grow};
 
 /// The rooms of this crate.
 pub fn operations() -> Vec<Box<dyn AnyOperation>> {
-    vec![erase::<grow::Grow>()]
+    vec![erase::<grow::Grow>(), erase::<furnish::Furnish>()]
 }

@@ -1,6 +1,6 @@
 //! Detectors: small functions from a layer to groups of nodes that must stay together.
 
-use exurb_geom::{GridPoint, PointIndex, Polygon, Vec2, polyline};
+use exurb_geom::{Bounds, GridPoint, PointIndex, Polygon, SegmentIndex, Vec2, polyline};
 
 use super::layer::Layer;
 
@@ -33,6 +33,10 @@ pub fn circles(layer: &Layer, most_m: f64) -> Vec<Vec<usize>> {
     for (i, (center, _)) in votes.iter().enumerate() {
         index.insert(i as u32, *center);
     }
+    let mut chain_index = SegmentIndex::new(100.0);
+    for (number, chain) in layer.chains.iter().enumerate() {
+        chain_index.insert_line(number as u32, &chain.line);
+    }
     // Centres by number of votes of like radius nearby.
     let mut ranked: Vec<(usize, usize)> = (0..votes.len())
         .map(|i| {
@@ -59,13 +63,21 @@ pub fn circles(layer: &Layer, most_m: f64) -> Vec<Vec<usize>> {
         }
         tried.push((center, radius));
         let tolerance_m = (radius * 0.1).clamp(CELL_M, 20.0);
+        let reach = Vec2::splat(radius + tolerance_m);
+        let ring = Bounds { min: center - reach, max: center + reach };
         let on_ring = |chain: &usize| {
             let points = &samples[*chain];
             let near = |p: &&Vec2| (p.distance(center) - radius).abs() < tolerance_m;
             points.iter().filter(near).count() as f64 >= ON_RING * points.len() as f64
         };
-        let chains: Vec<usize> =
-            (0..samples.len()).filter(|c| !taken[*c]).filter(on_ring).collect();
+        let mut chains: Vec<usize> = Vec::new();
+        chain_index.visit(ring, |e| {
+            chains.push(e.id as usize);
+            true
+        });
+        chains.sort_unstable();
+        chains.dedup();
+        chains.retain(|c| !taken[*c] && on_ring(c));
         let covered: f64 = chains.iter().map(|c| layer.chains[*c].length_m).sum();
         if covered < COVERED * std::f64::consts::TAU * radius {
             continue;

@@ -133,7 +133,7 @@ pub fn learn(city: &City, params: &Params) -> Result<Vocabulary, Error> {
     if city.streets.edge_count() == 0 {
         return Err(Error::NoStreets(name.to_string()));
     }
-    let graph = prepare::learnable(&city.streets);
+    let graph = prepare::learnable(&city.streets, &city.buildings);
     if graph.edge_count() < 3 {
         return Err(Error::NoStreets(name.to_string()));
     }

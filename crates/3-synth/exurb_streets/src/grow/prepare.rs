@@ -1,9 +1,11 @@
 //! The example as growth wants it: what can be copied without breaking a law.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
+use exurb_city::simplify::{self, Simplify};
 use exurb_city::street_graph::{self, StreetGraph};
-use exurb_city::{Junction, Role, Street, block};
+use exurb_city::{Building, Junction, Role, Street, block};
 use exurb_geom::{Bounds, GridPoint, SegmentIndex, grid};
 use exurb_graph::{EdgeId, Graph, NodeId};
 
@@ -11,8 +13,16 @@ use exurb_graph::{EdgeId, Graph, NodeId};
 const SHORTEST_M: f64 = 8.0;
 
 /// Streets that growth learns from: no motorways (never grown), no tunnels, nothing that passes over
-/// another street, no stubs. On flat land what is left of bridges lies on the ground.
-pub fn learnable(streets: &StreetGraph) -> StreetGraph {
+/// another street, no stubs; the carriageways of a street as one. On flat land what is left of bridges
+/// lies on the ground.
+pub fn learnable(streets: &StreetGraph, buildings: &Arc<Vec<Building>>) -> StreetGraph {
+    let options = Simplify {
+        keep_circles: true,
+        by_geometry: !simplify::knows_oneways(streets),
+        buildings: buildings.clone(),
+        ..Simplify::default()
+    };
+    let streets = &simplify::simplify(streets, &options);
     let on_ground = block::bounding_edges(streets);
     let mut graph = street_graph::subgraph(streets, |id, street| {
         on_ground[id.index()] && !street.class.is_given_only() && street.role() != Role::Other
