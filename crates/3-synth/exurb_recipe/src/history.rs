@@ -1,12 +1,11 @@
 //! The recipe inside a city file: portable, and continued when a city is worked on again.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::time::Instant;
 
-use exurb_operation::{Example, Run};
+use exurb_operation::Run;
 
-use crate::{Error, Inputs, Recipe, Registry, Source, Step, Target, Within, open, read_source};
+use crate::{Error, Inputs, Recipe, Registry, Source, Step, Target, Within, open, read_example};
 
 impl Recipe {
     /// The recipe as it goes into a city's metadata: files by their names alone, no threads and no
@@ -77,8 +76,7 @@ impl Recipe {
             }
         }
         for source in &sources {
-            let city = Arc::new(read_source(source, folder, run)?);
-            inputs.examples.push(Example { city, weight: source.weight });
+            inputs.examples.push(read_example(source, folder, run)?);
         }
         self.examples = sources;
         inputs.read_seconds += started.elapsed().as_secs_f64();

@@ -2,6 +2,7 @@ use std::sync::Arc;
 
 use exurb_city::City;
 use exurb_geom::{Frame, GridPoint, Polygon};
+use exurb_operation::Example;
 
 use super::*;
 use crate::test_operation::registry;

@@ -44,5 +44,5 @@ pub use format::READABLE;
 pub use open::open_city;
 pub use recipe::{Export, Half, Recipe, Source, Step, Target, VERSION, Within};
 pub use registry::{Registry, needs_city};
-pub use run::{Inputs, Made, Seconds, read_source};
+pub use run::{Inputs, Made, Seconds, read_example, read_source};
 pub use size::Size;

@@ -10,7 +10,11 @@ pub struct Registry {
 impl Registry {
     /// Every operation of this program, by stage and method.
     pub fn all() -> Self {
-        let stages = [exurb_streets::operations(), exurb_blocks::operations()];
+        let stages = [
+            exurb_streets::operations(),
+            exurb_blocks::operations(),
+            exurb_buildings::operations(),
+        ];
         Self::new(stages.into_iter().flatten().collect())
     }
 

@@ -57,8 +57,7 @@ impl Recipe {
         let started = Instant::now();
         let mut examples = Vec::new();
         for source in &self.examples {
-            let city = Arc::new(read_source(source, folder, run)?);
-            examples.push(Example { city, weight: source.weight });
+            examples.push(read_example(source, folder, run)?);
         }
         let city = self.first_city(&examples, folder, registry, run)?;
         run.check()?;
@@ -129,7 +128,7 @@ impl Recipe {
                 let chosen = named.filter(|(source, _)| names.contains(&source.name()));
                 chosen.map(|(_, example)| example.clone()).collect()
             }
-            _ => vec![Example::new(city.clone())],
+            _ => vec![itself(city)],
         }
     }
 }
@@ -142,14 +141,33 @@ fn scope(within: &Within, city: &City, folder: &Path) -> Result<Scope, Error> {
     })
 }
 
-/// The city of a source; what its reader warns of goes to `run`.
+/// The city of a source; what its reader warns of goes to `run`. A city that a recipe made keeps
+/// the name it has, whatever its file is called; others bear the source's name.
 pub fn read_source(source: &Source, folder: &Path, run: &Run) -> Result<City, Error> {
     let path = open::locate(&source.file, folder)?;
     run.phase(&format!("reading {}", source.name()));
     let Imported { mut city, warnings } = open::open_city(&path, &source.import_options())?;
-    city.metadata.name = source.name().into();
+    if source.name.is_some() || city.metadata.recipe.is_empty() {
+        city.metadata.name = source.name().into();
+    }
     let run = run.named(&source.name());
     warnings.into_iter().for_each(|warning| run.warn(warning));
     run.check()?;
     Ok(city)
+}
+
+/// [`read_source`] for an example: what is copied from it bears the source's name.
+pub fn read_example(source: &Source, folder: &Path, run: &Run) -> Result<Example, Error> {
+    let mut city = read_source(source, folder, run)?;
+    city.metadata.name = source.name().into();
+    Ok(Example { city: Arc::new(city), weight: source.weight })
+}
+
+/// A city as its own example, under a name that no file's name changes.
+fn itself(city: &City) -> Example {
+    let mut city = city.clone();
+    if city.metadata.name.is_empty() {
+        city.metadata.name = "city".into();
+    }
+    Example::new(city)
 }

@@ -38,7 +38,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Problem> {
     let source = options.part.apply(Source::new(&options.example));
     let lesson = job::work(&options.run, 1, |run| {
         let pending = options.output.as_deref().map(Pending::new).transpose()?;
-        let city = exurb_recipe::read_source(&source, Path::new(""), run)?;
+        let city = exurb_recipe::read_example(&source, Path::new(""), run)?.city;
         run.phase("measuring");
         let lesson = lesson(&city);
         run.check()?;
