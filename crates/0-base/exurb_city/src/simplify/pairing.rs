@@ -107,19 +107,15 @@ impl<'a> Carriageways<'a> {
         }
     }
 
-    /// Neither street nor building between?
+    /// Neither street, on whatever level, nor building between?
     fn is_clear(&self, edge: EdgeId, found: &Beside, p: GridPoint) -> bool {
         let q = GridPoint::round(found.at);
         let mut near = Vec::new();
         self.grid.near(p, q, 0, &mut near);
-        let level = self.graph.edge(edge).data.crossing_level();
         let street = near.iter().any(|piece| {
             let other = self.owners[*piece as usize];
             let (a, b) = self.grid.segment(*piece);
-            other != edge
-                && other != found.edge
-                && self.graph.edge(other).data.crossing_level() == level
-                && grid::cross_properly(p, q, a, b)
+            other != edge && other != found.edge && grid::cross_properly(p, q, a, b)
         });
         if street {
             return false;
@@ -199,18 +195,20 @@ fn changes(samples: &[(f64, bool)], length: f64) -> Vec<f64> {
             runs.push((start, *with));
         }
     }
-    // Drop the shortest run while it is too short; its neighbours close over it.
+    // Drop the shortest run while it is too short; its neighbours close over it. An end without a
+    // partner, where carriageways part towards a roundabout, is one however short.
     loop {
         let end = |i: usize| runs.get(i + 1).map_or(length, |(start, _)| *start);
-        let shortest =
-            (0..runs.len()).map(|i| (end(i) - runs[i].0, i)).min_by(|a, b| a.0.total_cmp(&b.0));
+        let is_end = |i: usize| i == 0 || i + 1 == runs.len();
+        let shortest = (0..runs.len())
+            .filter(|i| runs[*i].1 || !is_end(*i))
+            .map(|i| (end(i) - runs[i].0, i))
+            .min_by(|a, b| a.0.total_cmp(&b.0));
         match shortest {
             Some((m, i)) if m < LEAST_STRETCH_M && runs.len() > 1 => {
                 runs.remove(i);
-                if i == 0 {
-                    runs[0].0 = 0.0;
-                }
                 runs.dedup_by_key(|(_, with)| *with);
+                runs[0].0 = 0.0;
             }
             _ => break,
         }

@@ -8,10 +8,20 @@ use exurb_graph::{EdgeId, NodeId};
 use super::rebuild::joined;
 use crate::{StreetGraph, block::ISLAND_WIDTH_M, street_graph};
 
+/// Loops narrower than this are folds, in metres.
+const LEAST_LOOP_WIDTH_M: f64 = 2.0;
+
 /// Joins streets between the same two nodes that enclose nothing but an island: the approaches to
-/// a former roundabout, turning lanes.
+/// a former roundabout, turning lanes. Drops loops that are folds.
 pub fn close(graph: &StreetGraph) -> StreetGraph {
     let mut out = graph.clone();
+    for (id, edge) in graph.edges().filter(|(_, e)| e.from == e.to) {
+        if !Polygon::new(edge.line().to_vec(), Vec::new())
+            .is_some_and(|p| p.mean_width_m() >= LEAST_LOOP_WIDTH_M)
+        {
+            out.remove_edge(id);
+        }
+    }
     let mut between: BTreeMap<(NodeId, NodeId), Vec<EdgeId>> = BTreeMap::new();
     for (id, edge) in graph.edges().filter(|(_, e)| e.from != e.to) {
         let key = (edge.from.min(edge.to), edge.from.max(edge.to));
@@ -24,6 +34,7 @@ pub fn close(graph: &StreetGraph) -> StreetGraph {
             }
         }
     }
+    out.remove_isolated_nodes();
     street_graph::dissolve_all(&mut out);
     out.compacted()
 }

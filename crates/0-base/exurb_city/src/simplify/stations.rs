@@ -8,6 +8,10 @@ use crate::StreetGraph;
 
 /// A counterpart this near an existing node, along the carriageway, is that node. Metres.
 const NEAR_NODE_M: f64 = 12.0;
+/// Directions at nodes are taken over this much of a street, in metres.
+const LEG_M: f64 = 15.0;
+/// Carriageways are no nearer to each other than a street across is long, in metres.
+const LEAST_LINK_M: f64 = 3.0;
 /// Splits of one carriageway nearer than this are one, in metres.
 const NEAR_SPLIT_M: f64 = 6.0;
 
@@ -79,17 +83,17 @@ fn counterparts(
             graph.darts(node).iter().copied().filter(|d| dual[d.edge().index()]).collect();
         let mut roads: Vec<Vec2> = Vec::new();
         for dart in &halves {
-            let leaving = graph.direction(*dart, 15.0);
+            let leaving = graph.direction(*dart, LEG_M);
             // Both directions of one road need one counterpart; a road and its partner that meet
             // here are joined already.
             let is_new = roads.iter().all(|r| r.dot(leaving).abs() < 0.7);
             let is_apex =
-                halves.iter().any(|d| d != dart && graph.direction(*d, 15.0).dot(leaving) > 0.5);
+                halves.iter().any(|d| d != dart && graph.direction(*d, LEG_M).dot(leaving) > 0.5);
             if is_apex || !is_new {
                 continue;
             }
             let travel = if dart.is_forward() { leaving } else { -leaving };
-            if let Some(other) = linked(graph, dual, node, leaving, options.gap_m) {
+            if let Some(other) = linked(graph, dual, *dart, options.gap_m) {
                 roads.push(leaving);
                 pairs.push((node, other));
                 continue;
@@ -115,27 +119,32 @@ fn counterparts(
     (pairs, splits)
 }
 
-/// The node on the other carriageway that a short street across leads to.
-fn linked(
-    graph: &StreetGraph,
-    dual: &[bool],
-    node: NodeId,
-    leaving: Vec2,
-    gap_m: f64,
-) -> Option<NodeId> {
-    let across = graph.darts(node).iter().filter(|d| {
-        graph.edge(d.edge()).length_m() < gap_m * 1.3
-            && graph.direction(**d, 15.0).dot(leaving).abs() < 0.6
-            && graph.head(**d) != node
-    });
-    let candidates = across.filter(|d| {
-        graph.darts(graph.head(**d)).iter().any(|other| {
-            other.edge() != d.edge()
-                && dual[other.edge().index()]
-                && graph.direction(*other, 15.0).dot(leaving).abs() > 0.85
+/// The node on the other carriageway that a short street across leads to from the tail of `half`.
+fn linked(graph: &StreetGraph, dual: &[bool], half: Dart, gap_m: f64) -> Option<NodeId> {
+    let node = graph.tail(half);
+    let leaving = graph.direction(half, LEG_M);
+    let travel = if half.is_forward() { leaving } else { -leaving };
+    let oneway = graph.edge(half.edge()).data.oneway;
+    let is_other_half = |dart: &Dart| {
+        let leaving = graph.direction(*dart, LEG_M);
+        let their_travel = if dart.is_forward() { leaving } else { -leaving };
+        let turn = their_travel.dot(travel);
+        dual[dart.edge().index()] && if oneway { turn < -0.85 } else { turn.abs() > 0.85 }
+    };
+    graph
+        .darts(node)
+        .iter()
+        .filter(|d| {
+            let length_m = graph.edge(d.edge()).length_m();
+            let head = graph.head(**d);
+            (LEAST_LINK_M..gap_m * 1.3).contains(&length_m)
+                && graph.direction(**d, LEG_M).dot(leaving).abs() < 0.6
+                && head != node
+                && graph
+                    .darts(head)
+                    .iter()
+                    .any(|other| other.edge() != d.edge() && is_other_half(other))
         })
-    });
-    candidates
         .min_by(|a, b| graph.edge(a.edge()).length_m().total_cmp(&graph.edge(b.edge()).length_m()))
         .map(|d| graph.head(*d))
 }
