@@ -75,29 +75,6 @@ impl Ring {
         self.points[i].lerp(self.points[i + 1], t)
     }
 
-    /// The line from `from_m` to `to_m` (`from_m < to_m`), with the ring's points between.
-    pub fn part(&self, from_m: f64, to_m: f64) -> Vec<Vec2> {
-        let length = self.length_m();
-        let mut out = vec![self.point_at(from_m)];
-        let laps = (from_m / length).floor();
-        let (mut lap, mut i) = (laps, self.segment_at(from_m - laps * length) + 1);
-        loop {
-            if i + 1 >= self.points.len() {
-                (lap, i) = (lap + 1.0, 0);
-            }
-            let at = self.starts_m[i] + lap * length;
-            if at >= to_m {
-                break;
-            }
-            if at > from_m {
-                out.push(self.points[i]);
-            }
-            i += 1;
-        }
-        out.push(self.point_at(to_m));
-        out
-    }
-
     /// The place nearest to `p`.
     pub fn nearest(&self, p: Vec2) -> Place {
         let (q, at_m, i) = polyline::nearest(&self.points, p);
@@ -204,9 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_run_over_the_start() {
-        let part = ring(&RECTANGLE).part(270.0, 300.0);
-        assert_eq!(part, [(0., 10.), (0., 0.), (20., 0.)].map(|(x, y)| Vec2::new(x, y)));
+    fn positions_run_over_the_start() {
         assert_eq!(ring(&RECTANGLE).point_at(-10.0), Vec2::new(0.0, 10.0));
         let place = ring(&RECTANGLE).nearest(Vec2::new(30.0, 5.0));
         assert_eq!((place.at_m, place.distance_m, place.direction), (30.0, 5.0, Vec2::X));

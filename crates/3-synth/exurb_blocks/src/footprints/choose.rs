@@ -24,21 +24,32 @@ pub fn samples<'a>(donors: &[&'a ExampleBlock]) -> Vec<&'a BuildingSample> {
     out
 }
 
-/// The sample for `lot`: alike in frontage, at a corner or not, sharing a wall with the building
-/// before when that one reaches the common border, and no deeper than the lot.
+/// Which borders between lots along the kerb are shared walls: the first donor's, in order from a
+/// place drawn at random, so that rows are as long as in the example.
+pub fn walls<'a>(
+    samples: &[&'a BuildingSample],
+    rng: &mut Rng,
+) -> impl Iterator<Item = bool> + use<'a> {
+    let start = rng.random::<u32>() as usize % samples.len().max(1);
+    let walls: Vec<bool> = samples.iter().map(|s| s.gap_after_m == 0.0).collect();
+    (start..).map(move |k| walls.get(k % walls.len().max(1)).copied().unwrap_or(false))
+}
+
+/// The sample for `lot`: alike in frontage, at a corner or not, in sharing walls, and no deeper than
+/// the lot.
 pub fn choose<'a>(
     samples: &[&'a BuildingSample],
     lot: &Lot,
     depth_m: f64,
-    before_touches: Option<bool>,
+    walls: (bool, bool),
     rng: &mut Rng,
 ) -> Option<&'a BuildingSample> {
     let frontage = if lot.is_corner() { lot.width_m } else { lot.frontage_m() };
     let cost = |s: &BuildingSample| {
         let width = (trig::ln(frontage.max(1.0)) - trig::ln(s.frontage_m.max(1.0))).abs();
         let corner = if s.at_corner == lot.is_corner() { 0.0 } else { 0.3 };
-        let touching = s.gap_before_m == 0.0;
-        let wall = if before_touches.is_some_and(|t| t != touching) { 0.8 } else { 0.0 };
+        let differs = |wall: bool, gap_m: f64| if wall == (gap_m == 0.0) { 0.0 } else { 0.5 };
+        let wall = differs(walls.0, s.gap_before_m) + differs(walls.1, s.gap_after_m);
         let deep = ((s.setback_m + s.size_m.y - depth_m) / depth_m.max(1.0)).max(0.0);
         width + corner + wall + deep
     };

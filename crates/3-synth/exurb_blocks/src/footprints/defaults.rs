@@ -23,6 +23,7 @@ fn sample(size_m: Vec2, setback_m: f64, gap_m: f64) -> BuildingSample {
     BuildingSample {
         frontage_m: size_m.x + gap_m,
         size_m,
+        band_m: size_m.y,
         setback_m,
         gap_before_m: gap_m,
         gap_after_m: gap_m,

@@ -15,6 +15,7 @@ mod error;
 mod lot;
 mod params;
 mod place;
+mod row;
 #[cfg(test)]
 mod tests;
 
@@ -180,20 +181,19 @@ impl<'a> Site<'a> {
         growth: f64,
         rng: &mut Rng,
     ) -> Vec<Building> {
+        let n = lots.len();
+        let joined =
+            |k: usize| n > 1 && lots[k].1.ends.1.distance(lots[(k + 1) % n].1.ends.0) < 0.5;
+        let walls: Vec<bool> =
+            choose::walls(samples, rng).take(n).enumerate().map(|(k, w)| w && joined(k)).collect();
         let mut out = Vec::new();
-        let mut last: Option<(exurb_geom::Vec2, bool)> = None;
-        for (parcel, lot) in lots {
+        for (k, (parcel, lot)) in lots.iter().enumerate() {
             let empty = rng.random::<f64>() < style.empty_share;
-            let (from, to) = lot.ends;
-            let before =
-                last.filter(|(end, _)| end.distance(from) < 0.5).map(|(_, touches)| touches);
             let depth = lot.depth_at(0.0) + block.pavement_m;
-            let Some(sample) = choose::choose(samples, lot, depth, before, rng) else { continue };
-            last = Some((to, sample.gap_after_m == 0.0 && !empty));
-            if empty {
-                continue;
-            }
-            let wish = style.wish(sample, block.pavement_m, growth);
+            let walls = (walls[(k + n - 1) % n], walls[k]);
+            let chosen = choose::choose(samples, lot, depth, walls, rng);
+            let Some(sample) = chosen.filter(|_| !empty) else { continue };
+            let wish = style.wish(sample, walls, block.pavement_m, growth);
             let Some(polygon) = place(lot, &wish).filter(|p| self.is_free(p)) else { continue };
             let mut building = Building::new(0, polygon, parcel.provenance.clone());
             (building.block, building.parcel) = (block.id, parcel.id);
@@ -239,21 +239,26 @@ impl<'p> Style<'p> {
         Self { params, empty_share, setback_m, coverage }
     }
 
-    fn wish<'s>(&self, sample: &'s BuildingSample, pavement_m: f64, growth: f64) -> Wish<'s> {
-        let params = self.params;
+    fn wish<'s>(
+        &self,
+        sample: &'s BuildingSample,
+        walls: (bool, bool),
+        pavement_m: f64,
+        growth: f64,
+    ) -> Wish<'s> {
         // Houses in a row keep the building line of their block, give or take a bay window.
-        let in_row = sample.gap_before_m == 0.0 || sample.gap_after_m == 0.0;
+        let in_row = walls.0 || walls.1;
         let off_line = (sample.setback_m - self.setback_m).abs();
-        let setback = if in_row && off_line < 1.5 { self.setback_m } else { sample.setback_m };
+        let setback = if in_row && off_line < 2.5 { self.setback_m } else { sample.setback_m };
         Wish {
             sample,
-            setback_m: (setback * params.setback_factor - pavement_m).max(0.0),
-            depth_m: sample.size_m.y * params.depth_factor * growth,
+            setback_m: (setback * self.params.setback_factor - pavement_m).max(0.0),
+            depth_factor: self.params.depth_factor,
             growth,
-            wall_before: sample.gap_before_m == 0.0,
-            wall_after: sample.gap_after_m == 0.0,
-            min_gap_m: params.min_gap,
-            min_area_m2: params.min_area,
+            wall_before: walls.0,
+            wall_after: walls.1,
+            min_gap_m: self.params.min_gap,
+            min_area_m2: self.params.min_area,
         }
     }
 }

@@ -46,6 +46,8 @@ const SPARSE_COVERAGE: f64 = 0.12;
 const ANNEX_SHARE: f64 = 0.4;
 /// Walls nearer than this are one, in metres.
 const SHARED_WALL_M: f64 = 0.4;
+/// A building is compared with so many on either side.
+const NEIGHBOURS: usize = 2;
 /// Depth of lots, in metres, at least and at most.
 const DEPTHS_M: (f64, f64) = (8.0, 150.0);
 /// Outlines are simplified by this much, in metres.
@@ -235,24 +237,34 @@ fn samples(fronts: &[Fronting], rings: &[Ring]) -> Vec<BuildingSample> {
         .map(|k| {
             let front = &fronts[k].front;
             let cap = front.size_m.x.max(8.0) * 2.0;
-            let gap_to = |other: usize, along: f64| {
-                if other == k || fronts[other].front.ring != front.ring {
-                    return cap;
-                }
-                if gap_m(polygon(k), polygon(other)) < SHARED_WALL_M {
-                    return 0.0;
-                }
-                along.clamp(0.5, cap)
-            };
             let length = rings[front.ring].length_m();
             let ahead = |from: f64, to: f64| {
                 let d = (to - from).rem_euclid(length);
                 if d > length / 2.0 { d - length } else { d }
             };
-            let before = (k + fronts.len() - 1) % fronts.len();
-            let after = (k + 1) % fronts.len();
-            let gap_before_m = gap_to(before, ahead(fronts[before].front.span().1, front.span().0));
-            let gap_after_m = gap_to(after, ahead(front.span().1, fronts[after].front.span().0));
+            // Gaps to the nearest of the next few on either side; at corners the one that shares
+            // the wall need not be the next one along the kerb.
+            let (mut gap_before_m, mut gap_after_m) = (cap, cap);
+            for step in 1..=NEIGHBOURS.min(fronts.len() - 1) {
+                for other in [(k + fronts.len() - step) % fronts.len(), (k + step) % fronts.len()] {
+                    let there = &fronts[other].front;
+                    if other == k || there.ring != front.ring {
+                        continue;
+                    }
+                    let is_after = ahead(front.at_m, there.at_m) > 0.0;
+                    let along = if is_after {
+                        ahead(front.span().1, there.span().0)
+                    } else {
+                        ahead(there.span().1, front.span().0)
+                    };
+                    let shares = gap_m(polygon(k), polygon(other)) < SHARED_WALL_M;
+                    let gap = if shares { 0.0 } else { along.clamp(0.5, cap) };
+                    let side = if is_after { &mut gap_after_m } else { &mut gap_before_m };
+                    if shares || step == 1 {
+                        *side = side.min(gap);
+                    }
+                }
+            }
             let near_corner = front.setback_m * 1.5 + 4.0;
             let at_corner = corners[front.ring]
                 .iter()
@@ -260,6 +272,7 @@ fn samples(fronts: &[Fronting], rings: &[Ring]) -> Vec<BuildingSample> {
             BuildingSample {
                 frontage_m: front.size_m.x + (gap_before_m + gap_after_m) / 2.0,
                 size_m: front.size_m,
+                band_m: super::building_sample::band_m(&front.outline[0], front.size_m),
                 setback_m: front.setback_m,
                 gap_before_m,
                 gap_after_m,
