@@ -4,6 +4,7 @@ use exurb_city::{Building, Roof};
 use exurb_geom::{GridPoint, Polygon, SegmentIndex, polyline};
 use rayon::prelude::*;
 
+use crate::ground::GROUND_M;
 use crate::palette::{Linear, pick, scaled, share};
 use crate::roof::{self, Top};
 use crate::scene::{Layer, Material, Part, Site};
@@ -46,44 +47,50 @@ fn empty() -> [Part; 3] {
     [Material::Plain, Material::Windows, Material::Glass].map(Part::new)
 }
 
+/// A building to show, and what it is used for.
+struct Shown<'a> {
+    building: &'a Building,
+    usage: &'a str,
+}
+
 /// Parts stand for the building around them where they cover most of it (as OSM's simple 3D
-/// buildings are read); else both are shown.
-fn shown<'a>(site: &Site<'a>) -> Vec<&'a Building> {
+/// buildings are read); else both are shown. Parts are used as that building is.
+fn shown<'a>(site: &Site<'a>) -> Vec<Shown<'a>> {
     let all = &site.city.buildings;
     let mut index = SegmentIndex::new(50.0);
     for (part, i) in all.iter().zip(0u32..).filter(|(b, _)| b.is_part) {
         let at = part.polygon.interior_point();
         index.insert(i, at, at);
     }
-    let replaced = |building: &Building| {
-        if index.is_empty() {
-            return false;
+    let mut usage: Vec<&str> = all.iter().map(|b| b.usage.as_deref().unwrap_or("yes")).collect();
+    let mut is_hidden = vec![false; all.len()];
+    for (k, building) in all.iter().enumerate().filter(|(_, b)| !b.is_part && !index.is_empty()) {
+        let mut covered_m2 = 0.0;
+        for i in index.ids(building.polygon.bounds()) {
+            let part = &all[i as usize].polygon;
+            if building.polygon.contains(GridPoint::round(part.interior_point())) {
+                covered_m2 += part.area_m2();
+                if usage[i as usize] == "yes" {
+                    usage[i as usize] = usage[k];
+                }
+            }
         }
-        let bounds = building.polygon.bounds();
-        let inside = |i: &u32| {
-            let part = &all[*i as usize];
-            building.polygon.contains(GridPoint::round(part.polygon.interior_point()))
-        };
-        let parts = index.ids(bounds);
-        let covered: f64 =
-            parts.iter().filter(|i| inside(i)).map(|i| all[*i as usize].polygon.area_m2()).sum();
-        covered > 0.6 * building.polygon.area_m2()
-    };
-    all.iter()
-        .filter(|b| b.polygon.bounds().intersects(site.bounds))
-        .filter(|b| b.is_part || !replaced(b))
-        .collect()
+        is_hidden[k] = covered_m2 > 0.6 * building.polygon.area_m2();
+    }
+    let near = |b: &Building| b.polygon.bounds().intersects(site.bounds);
+    let listed = all.iter().zip(usage).zip(is_hidden).filter(|((b, _), hidden)| !hidden && near(b));
+    listed.map(|((building, usage), _)| Shown { building, usage }).collect()
 }
 
-fn add(site: &Site, building: &Building, parts: &mut [Part; 3]) {
+fn add(site: &Site, shown: &Shown, parts: &mut [Part; 3]) {
+    let building = shown.building;
     let Some(polygon) = straightened(&building.polygon) else { return };
     let id = building.id;
-    let kind = kind(building);
+    let kind = kind(shown.usage, building);
     let height_m = height_m(building, kind);
     let base_m = building.min_height_m.clamp(0.0, height_m - 0.3);
     let shape = if site.options.roofs { shape(building, kind, height_m) } else { Roof::Flat };
-    // Walls stand a little in the ground, so that no light shows below on a slope of the kerb.
-    let foot_m = if base_m > 0.0 { base_m } else { -0.1 };
+    let foot_m = if base_m > 0.0 { base_m } else { GROUND_M };
     let slope = if kind == Kind::Church { 1.1 } else { roof::slope(shape, share(id, 11)) };
     let top = Top::of(&polygon, shape, base_m, height_m, slope);
     let storeys_m = height_m - base_m;
@@ -91,7 +98,9 @@ fn add(site: &Site, building: &Building, parts: &mut [Part; 3]) {
         _ if !site.options.facades || storeys_m < 2.6 => Material::Plain,
         Kind::Hall | Kind::Shed | Kind::Church => Material::Plain,
         Kind::Office => Material::Glass,
-        Kind::Unknown if height_m > 28.0 && share(id, 12) < 0.5 => Material::Glass,
+        Kind::Unknown if height_m > 28.0 && !building.is_part && share(id, 12) < 0.5 => {
+            Material::Glass
+        }
         _ => Material::Windows,
     };
     let (wall, roof) = colors(id, kind, material, !top.faces.is_empty() || shape == Roof::Skillion);
@@ -133,17 +142,17 @@ fn straightened(polygon: &Polygon) -> Option<Polygon> {
     Polygon::new(ring(polygon.exterior()), holes).filter(|p| p.area_m2() > 0.5)
 }
 
-fn kind(building: &Building) -> Kind {
-    match building.usage.as_deref().unwrap_or("yes") {
+fn kind(usage: &str, building: &Building) -> Kind {
+    match usage {
         "house" | "detached" | "semidetached_house" | "semi" | "terrace" | "bungalow" | "cabin"
         | "farm" | "villa" => Kind::House,
         "apartments" | "residential" | "dormitory" | "hotel" => Kind::Apartments,
-        "office" | "commercial" | "government" | "bank" | "company" => Kind::Office,
+        "office" | "commercial" | "bank" | "company" => Kind::Office,
         "industrial" | "warehouse" | "retail" | "supermarket" | "hangar" | "sports_hall"
         | "stadium" | "train_station" | "barn" | "farm_auxiliary" | "parking" => Kind::Hall,
         "garage" | "garages" | "shed" | "hut" | "carport" | "roof" | "kiosk" | "greenhouse"
         | "service" | "toilets" | "transformer_tower" => Kind::Shed,
-        "church" | "cathedral" | "chapel" | "place_of_worship" | "temple" => Kind::Church,
+        "church" | "cathedral" | "chapel" | "place_of_worship" | "temple" | "tower" => Kind::Church,
         _ if building.polygon.area_m2() < 32.0 => Kind::Shed,
         _ => Kind::Unknown,
     }
@@ -194,7 +203,8 @@ fn colors(id: u32, kind: Kind, material: Material, pitched: bool) -> (Linear, Li
     const OFFICES: [u32; 6] = [0xd5d9dc, 0xc3c9ce, 0xe3e1dc, 0xb9bdb9, 0xcdc4b6, 0xdfe4e6];
     const HALLS: [u32; 5] = [0xc9c7c1, 0xb7b5ae, 0xd6cfc2, 0xa9adb0, 0xc0a996];
     const CHURCHES: [u32; 3] = [0xd8cdb8, 0xc9b698, 0xb98f74];
-    const TILES: [u32; 7] = [0xa5583f, 0x96503b, 0xb0664a, 0x8a4a3a, 0x6e5148, 0x5c5654, 0x9c6049];
+    const TILES: [u32; 8] =
+        [0x95574a, 0x8a5044, 0xa0624d, 0x7d4a40, 0x6a514b, 0x585554, 0x8f5f50, 0x9a5a44];
     const FLATS: [u32; 6] = [0x9b9892, 0xaaa69e, 0x8c8a86, 0xb7b2a8, 0x7f8182, 0xa39b8c];
     let walls: &[u32] = match kind {
         Kind::Office => &OFFICES,

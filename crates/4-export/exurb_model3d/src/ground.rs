@@ -12,7 +12,7 @@ use crate::scene::{Layer, Material, Part, Site};
 /// Heights in metres. Carriageways lie at 0, kerbs are 12 cm high; open ground lies a little lower
 /// than streets, so that these may overlap it.
 pub const BLOCK_M: f64 = 0.12;
-const GROUND_M: f64 = -0.25;
+pub const GROUND_M: f64 = -0.25;
 const LAND_USE_M: f64 = -0.12;
 const WATER_M: f64 = -0.8;
 
@@ -81,16 +81,22 @@ fn water_layer(site: &Site, water: &[Area]) -> Layer {
     Layer { name: "water", parts: vec![surface, banks] }
 }
 
-/// Open ground between the blocks, or where there are none.
+/// Open ground between the blocks, or where there are none. Where areas overlap, the smaller one,
+/// later in the list, is seen.
 fn land_use_layer(site: &Site, land_use: &[Area], wet: &[&Polygon]) -> Layer {
+    let seen: Vec<Vec<Polygon>> = (0..land_use.len())
+        .into_par_iter()
+        .map(|i| {
+            let above = land_use[i + 1..].iter().map(|a| &a.polygon);
+            overlay::difference(&land_use[i].polygon, above.chain(wet.iter().copied()))
+        })
+        .collect();
     let mut part = Part::new(Material::Plain);
-    for (i, area) in land_use.iter().enumerate() {
+    for (area, pieces) in land_use.iter().zip(&seen) {
         part.begin(area.id);
         let color = linear(palette::ground_of(Some(&area.class)));
-        // Smaller areas lie later in the list, and on top by a hair.
-        let height_m = LAND_USE_M + 0.08 * i as f64 / land_use.len() as f64;
-        for piece in overlay::difference(&area.polygon, wet.iter().copied()) {
-            part.mesh.horizontal(site.axes, &piece, height_m, color, Facing::Up);
+        for piece in pieces {
+            part.mesh.horizontal(site.axes, piece, LAND_USE_M, color, Facing::Up);
         }
     }
     Layer { name: "land_use", parts: vec![part] }

@@ -47,14 +47,14 @@ pub fn pick(hexes: &[u32], id: u32, purpose: u32) -> Linear {
 }
 
 pub const ASPHALT: u32 = 0x5d5f63;
-pub const PAVED: u32 = 0xb3aca0;
-pub const PAVEMENT: u32 = 0xbdb9b0;
+pub const PAVED: u32 = 0xaaa397;
+pub const PAVEMENT: u32 = 0xb3afa6;
 pub const KERB: u32 = 0x9c9890;
 pub const MARKING: u32 = 0xe9e7df;
 pub const CONCRETE: u32 = 0xa9a59c;
 pub const WATER: u32 = 0x4f86a6;
 pub const BANK: u32 = 0x8c8371;
-pub const GROUND: u32 = 0xa9ae8b;
+pub const GROUND: u32 = 0x98a07a;
 pub const LAMP: u32 = 0x4a4d50;
 pub const LAMP_HEAD: u32 = 0xf7e9b8;
 pub const TRUNK: u32 = 0x6b5340;
@@ -65,16 +65,16 @@ pub fn ground_of(land_use: Option<&str>) -> u32 {
         Some(
             "park" | "garden" | "grass" | "meadow" | "village_green" | "recreation_ground"
             | "golf_course",
-        ) => 0x93ad68,
-        Some("forest" | "wood" | "nature_reserve" | "scrub" | "heath") => 0x7b9659,
+        ) => 0x86a35e,
+        Some("forest" | "wood" | "nature_reserve" | "scrub" | "heath") => 0x6c8a50,
         Some("cemetery" | "allotments" | "orchard" | "vineyard") => 0x98ab74,
         Some("pitch" | "playground" | "sports_centre" | "stadium") => 0x86b06c,
-        Some("farmland") => 0xc4ba83,
+        Some("farmland") => 0xb9ae76,
         Some("beach" | "sand") => 0xdccfa0,
         Some("wetland") => 0x8aa384,
-        Some("commercial" | "retail" | "industrial" | "railway" | "port" | "parking") => 0xafa99d,
+        Some("commercial" | "retail" | "industrial" | "railway" | "port" | "parking") => 0xa59f93,
         Some("construction" | "brownfield" | "quarry") => 0xb3a48c,
-        _ => 0xaeb192,
+        _ => 0x9fa682,
     }
 }
 

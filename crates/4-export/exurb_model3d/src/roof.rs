@@ -254,7 +254,12 @@ impl Frame {
     ) -> Option<Option<Face>> {
         let (from, to) = (low.0 * last_m, high.0 * last_m);
         let slope = (high.1 - low.1) / (high.0 - low.0).max(1e-9);
-        let height = |time: f64| eaves_m + rise_m * (low.1 + (time / last_m - low.0) * slope);
+        // Exactly the same on both sides of a bend.
+        let height = |time: f64| match time {
+            t if t == from => eaves_m + rise_m * low.1,
+            t if t == to => eaves_m + rise_m * high.1,
+            t => eaves_m + rise_m * (low.1 + (t / last_m - low.0) * slope),
+        };
         let inside = |time: f64| time >= from - 1e-9 && time <= to + 1e-9;
         let mut ring: Vec<(Vec2, f64)> = Vec::new();
         for (i, n) in face.iter().enumerate() {

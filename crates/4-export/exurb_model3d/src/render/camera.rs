@@ -45,12 +45,13 @@ impl Camera {
 
         let bounds = city.target.bounds();
         let middle = bounds.center() - scene.center;
-        // Half of what the frame shows across, at the middle: the side of a square as large.
+        // Half of what the frame shows across, at the middle: so much that hardly anything but city
+        // is in it.
         let size = bounds.size();
-        let half_m = (size.x * size.y).sqrt() * 0.5 / view.zoom.clamp(0.1, 100.0);
+        let half_m = (size.x * size.y).sqrt() * 0.35 / view.zoom.clamp(0.1, 100.0);
         let distance_m = (half_m / tan_x.max(tan_y)).max(20.0);
         // A little in front of the middle: what is near takes more of the picture.
-        let ahead = azimuth * (half_m * 0.12);
+        let ahead = azimuth * (half_m * 0.08);
         let look_at = DVec3::new(middle.x, 0.0, -middle.y) + ahead;
         let lens = Lens::Perspective { tan_x: tan_x as f32, tan_y: tan_y as f32 };
         Self::looking(look_at + away * distance_m, -away, lens, width as usize, height as usize)

@@ -9,8 +9,9 @@ use super::camera::{Camera, Lens, compass};
 use super::raster::Bands;
 use super::surface::Surfaces;
 
-/// Samples along the sides of the shadow map and of the map of heights.
-const SHADOW_SIZE: usize = 4096;
+/// Most samples along the sides of the shadow map.
+const SHADOW_SIZE: u32 = 4096;
+/// Samples along the sides of the map of heights.
 const SKY_SIZE: usize = 1024;
 const ROWS_PER_BAND: usize = 64;
 
@@ -33,8 +34,10 @@ impl Light {
         let elevation = view.sun_elevation_deg.clamp(5.0, 90.0).to_radians();
         let sun =
             compass(view.sun_azimuth_deg) * trig::cos(elevation) + DVec3::Y * trig::sin(elevation);
+        // Finer than the picture would not show.
+        let shadow_size = (view.width_px.max(view.height_px) * 3).clamp(512, SHADOW_SIZE);
         let (shadow, sky) = rayon::join(
-            || Map::depth(surfaces, -sun, SHADOW_SIZE),
+            || Map::depth(surfaces, -sun, shadow_size as usize),
             || Map::depth(surfaces, DVec3::NEG_Y, SKY_SIZE).sky(),
         );
         Self { sun: sun.as_vec3(), shadow, sky }

@@ -38,15 +38,15 @@ pub struct View {
     /// Where the camera stands as seen from the middle: degrees clockwise from north; default 225,
     /// the south-west.
     pub azimuth_deg: f64,
-    /// How high the camera stands over the horizon, in degrees, 2 to 89; default 30.
+    /// How high the camera stands over the horizon, in degrees, 2 to 89; default 26.
     pub elevation_deg: f64,
-    /// Vertical angle of view in degrees, 5 to 100; default 36.
+    /// Vertical angle of view in degrees, 5 to 100; default 38.
     pub field_of_view_deg: f64,
     /// 1 fills the frame with the city, 2 with half of it.
     pub zoom: f64,
     /// Where the sun stands, degrees clockwise from north; default 165.
     pub sun_azimuth_deg: f64,
-    /// Height of the sun in degrees, 5 to 90; default 40.
+    /// Height of the sun in degrees, 5 to 90; default 38.
     pub sun_elevation_deg: f64,
     /// Samples along each side of a pixel, 1 to 4; default 2.
     pub samples: u32,
@@ -61,8 +61,8 @@ impl Default for View {
             width_px: 1600,
             height_px: 1000,
             azimuth_deg: 225.0,
-            elevation_deg: 30.0,
-            field_of_view_deg: 36.0,
+            elevation_deg: 26.0,
+            field_of_view_deg: 38.0,
             zoom: 1.0,
             sun_azimuth_deg: 165.0,
             sun_elevation_deg: 40.0,

@@ -247,3 +247,33 @@ fn clipped(corners: [Vec3; 3], lens: Lens) -> impl Iterator<Item = [Vec3; 3]> {
     }
     (2..n).map(move |i| [ring[0], ring[i - 1], ring[i]])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Four triangles around a point fill a square, and no sample twice.
+        #[test]
+        fn triangles_that_share_sides_share_no_sample(
+            x in 1.0..31.0f32, y in 1.0..31.0f32, w in 0.0..0.9f32,
+        ) {
+            let corners = [[w, w, 1.0], [32.0 - w, w, 1.0], [32.0 - w, 32.0 - w, 1.0], [w, 32.0 - w, 1.0]];
+            let mut covered = vec![0; 32 * 32];
+            for k in 0..4 {
+                let mut corners = [corners[k], corners[(k + 1) % 4], [x, y, 1.0]];
+                corners.sort_by(|p, q| p[1].total_cmp(&q[1]));
+                let triangle = Placed { corners, number: 0 };
+                let [from, to] = row_range(&triangle, 32);
+                for row in from..to {
+                    for column in columns(&triangle, row, 32).into_iter().flatten() {
+                        covered[row * 32 + column] += 1;
+                    }
+                }
+            }
+            let inner = |i: &usize| (1..31).contains(&(i % 32)) && (1..31).contains(&(i / 32));
+            prop_assert!((0..32 * 32).filter(inner).all(|i| covered[i] == 1));
+        }
+    }
+}

@@ -40,7 +40,7 @@ impl<'a> Shader<'a> {
             windows: Texture::of(Material::Windows),
             glass: Texture::of(Material::Glass),
             ground: Vec3::new(r, g, b),
-            haze_m: (to_middle_m + size_m) * 2.2,
+            haze_m: (to_middle_m + size_m) * 1.6,
         }
     }
 
@@ -93,7 +93,7 @@ impl<'a> Shader<'a> {
             let phase = (x * 0.11 + z * 0.07).rem_euclid(1.0) - 0.5;
             1.0 - 4.0 * phase * phase
         };
-        let ripple = (wave(at.x, at.z) - wave(at.z * 1.7, -at.x * 1.3)) * 0.03;
+        let ripple = (wave(at.x, at.z) - wave(at.z * 1.7, -at.x * 1.3)) * 0.01;
         let normal = Vec3::new(ripple, 1.0, -ripple).normalize();
         let mirrored = view - normal * (2.0 * view.dot(normal));
         let grazing = 1.0 - normal.dot(-view).clamp(0.0, 1.0);
@@ -108,12 +108,7 @@ impl<'a> Shader<'a> {
             return sky(ray.normalize());
         }
         let distance = (self.camera.eye.y + 0.25) / -ray.y;
-        let at = self.camera.eye + ray * distance;
-        // Fields of a few tones.
-        let field = |v: f32| (v / 180.0).floor() as i32 as u32;
-        let tone = palette::share(field(at.x + at.z * 0.3), field(at.z - at.x * 0.3)) as f32;
-        let albedo = self.ground * (0.86 + 0.22 * tone);
-        let lit = albedo * (SUN * self.light.sun.y + SKY);
+        let lit = self.ground * (SUN * self.light.sun.y + SKY);
         self.hazy(lit, distance * ray.length(), ray)
     }
 
@@ -134,8 +129,12 @@ fn sky(ray: Vec3) -> Vec3 {
 
 /// Linear light → screen: highlights roll off, shadows stay.
 pub fn to_screen(light: Vec3) -> [u8; 3] {
-    let exposed = light * 0.62;
-    let rolled = exposed * (Vec3::ONE + exposed / 5.0) / (Vec3::ONE + exposed);
+    let exposed = light * 0.8;
+    let rolled = exposed * (Vec3::ONE + exposed / 6.0) / (Vec3::ONE + exposed);
+    // What rolling off takes from colours and darks comes back.
+    let grey = Vec3::splat(rolled.dot(Vec3::new(0.21, 0.72, 0.07)));
+    let vivid = grey + (rolled - grey) * 1.1;
+    let rolled = vivid * (Vec3::splat(0.82) + vivid * 0.3);
     [rolled.x, rolled.y, rolled.z]
         .map(|v| (to_srgb(f64::from(v.clamp(0.0, 1.0))) * 255.0).round() as u8)
 }
