@@ -1,7 +1,7 @@
 //! Which carriageways run side by side.
 
 use exurb_geom::{BoxGrid, GridPoint, SegmentGrid, Vec2, grid, polyline};
-use exurb_graph::{EdgeId, NodeId};
+use exurb_graph::{Dart, EdgeId, NodeId};
 
 use super::Simplify;
 use crate::{Role, Street, StreetGraph};
@@ -129,6 +129,19 @@ impl<'a> Carriageways<'a> {
         })
     }
 
+    /// Does another carriageway of the same road meet the tail of `dart`, side by side with it?
+    fn meets_half(&self, dart: Dart) -> bool {
+        let own = &self.graph.edge(dart.edge()).data;
+        let leaving = self.graph.direction(dart, 15.0);
+        self.graph.darts(self.graph.tail(dart)).iter().any(|other| {
+            other.edge() != dart.edge()
+                && self.is_candidate(other.edge())
+                && (!own.oneway || other.is_forward() != dart.is_forward())
+                && belong_together(own, &self.graph.edge(other.edge()).data)
+                && self.graph.direction(*other, 15.0).dot(leaving) > 0.3
+        })
+    }
+
     /// Samples along an edge: metres along it, and does a partner run beside?
     fn samples(&self, edge: EdgeId) -> Vec<(f64, bool)> {
         let line = self.graph.edge(edge).line_m();
@@ -168,7 +181,8 @@ pub fn split_where_partners_change(graph: &mut StreetGraph, options: &Simplify) 
         let carriageways = Carriageways::of(graph, options);
         for (id, edge) in graph.edges().filter(|(id, _)| carriageways.is_candidate(*id)) {
             let line = edge.line_m();
-            let places = changes(&carriageways.samples(id), polyline::length(&line));
+            let meets = [id.forward(), id.backward()].map(|dart| carriageways.meets_half(dart));
+            let places = changes(&carriageways.samples(id), polyline::length(&line), meets);
             let points: Vec<GridPoint> =
                 places.iter().map(|m| GridPoint::round(polyline::point_at(&line, *m))).collect();
             if !points.is_empty() {
@@ -187,7 +201,8 @@ pub fn split_where_partners_change(graph: &mut StreetGraph, options: &Simplify) 
 }
 
 /// Where samples change between with and without, in metres along, short stretches left out.
-fn changes(samples: &[(f64, bool)], length: f64) -> Vec<f64> {
+/// `meets`: does the start, the end lie where the two halves meet?
+fn changes(samples: &[(f64, bool)], length: f64, meets: [bool; 2]) -> Vec<f64> {
     let mut runs: Vec<(f64, bool)> = Vec::new(); // start, with
     for (i, (along, with)) in samples.iter().enumerate() {
         let start = if i == 0 { 0.0 } else { f64::midpoint(samples[i - 1].0, *along) };
@@ -199,7 +214,7 @@ fn changes(samples: &[(f64, bool)], length: f64) -> Vec<f64> {
     // partner, where carriageways part towards a roundabout, is one however short.
     loop {
         let end = |i: usize| runs.get(i + 1).map_or(length, |(start, _)| *start);
-        let is_end = |i: usize| i == 0 || i + 1 == runs.len();
+        let is_end = |i: usize| (i == 0 && !meets[0]) || (i + 1 == runs.len() && !meets[1]);
         let shortest = (0..runs.len())
             .filter(|i| runs[*i].1 || !is_end(*i))
             .map(|i| (end(i) - runs[i].0, i))
