@@ -1,11 +1,13 @@
 //! Writing cities: all files of a job under way first, then all put in their places.
 
 use std::path::Path;
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Instant;
 
 use exurb_city::City;
 use exurb_operation::Run;
 use exurb_recipe::Export;
+use rayon::prelude::*;
 
 use crate::format::Format;
 use crate::layer;
@@ -32,21 +34,26 @@ impl Outputs {
         Ok(Self { files })
     }
 
-    /// Writes them all; gives the seconds it took. A file appears only when all are whole.
+    /// Writes them all, at once on the threads of the current pool; gives the seconds it took. A
+    /// file appears only when all are whole.
     pub fn write(self, city: &City, run: &Run) -> Result<f64, Problem> {
         let started = Instant::now();
-        let mut others = Vec::new();
-        for (export, format, pending) in &self.files {
-            run.phase(&format!("writing {}", export.file.display()));
+        run.phase("writing");
+        let (done, total) = (AtomicU32::new(0), self.files.len() as u32);
+        let one = |(export, format, pending): &(Export, Format, Pending)| {
             run.check()?;
-            others.extend(match &export.layer {
+            let others = match &export.layer {
                 Some(name) => write(&layer::alone(city, name)?, export, *format, pending)?,
                 None => write(city, export, *format, pending)?,
-            });
-        }
+            };
+            run.progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
+            Ok(others)
+        };
+        let others: Result<Vec<Vec<Pending>>, Problem> = self.files.par_iter().map(one).collect();
+        let others = others?;
         run.check()?;
         let own = self.files.into_iter().map(|(.., pending)| pending);
-        own.chain(others).try_for_each(Pending::commit)?;
+        own.chain(others.into_iter().flatten()).try_for_each(Pending::commit)?;
         Ok(started.elapsed().as_secs_f64())
     }
 }

@@ -1,12 +1,12 @@
-//! `exurb demo`: a whole city from an example that comes with the program. The demo is a recipe
-//! like any other; it writes that recipe, too.
+//! `exurb demo`: a whole city from an example that comes with the program, or from one's own. The
+//! demo is a recipe like any other; it writes that recipe, too.
 
 use std::path::{Path, PathBuf};
 
 use clap::{ArgMatches, Args, Command, FromArgMatches};
-use exurb_recipe::{Export, Recipe, Registry, Source, Step, Target, builtin};
+use exurb_recipe::{Export, Recipe, Registry, Source, Step, builtin};
 
-use crate::options::RunOptions;
+use crate::options::{ExampleOptions, RunOptions, TargetOptions};
 use crate::output::{self, Outputs};
 use crate::pending::Pending;
 use crate::problem::Problem;
@@ -18,12 +18,17 @@ struct Options {
     #[arg(long, short, value_name = "DIR", default_value = "exurb-demo")]
     output: PathBuf,
     /// Built-in example to learn from
-    #[arg(long, value_name = "NAME", default_value = builtin::NAMES[0], value_parser = builtin::NAMES)]
+    #[arg(long, value_name = "NAME", default_value = builtin::NAMES[0],
+          value_parser = builtin::NAMES, conflicts_with = "examples")]
     style: String,
     /// Random seed: another number, another city
     #[arg(long, value_name = "N", default_value_t = 1,
           value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     seed: u64,
+    #[command(flatten)]
+    examples: ExampleOptions,
+    #[command(flatten)]
+    target: TargetOptions,
     #[command(flatten)]
     run: RunOptions,
 }
@@ -45,7 +50,8 @@ const FILES: [&str; 8] = [
 
 /// The command.
 pub fn command() -> Command {
-    let about = "Make a whole city of 2 km x 2 km from a built-in example, in every format";
+    let about =
+        "Make a whole city, by default 2 km x 2 km from a built-in example, in every format";
     Options::augment_args(Command::new("demo")).about(about)
 }
 
@@ -53,7 +59,7 @@ pub fn command() -> Command {
 pub fn run(matches: &ArgMatches, registry: &Registry) -> Result<(), Problem> {
     let options = Options::from_arg_matches(matches).map_err(|e| Problem::usage(e.to_string()))?;
     let folder = &options.output;
-    let recipe = recipe(&options.style, options.seed);
+    let recipe = recipe(&options);
     output::make_folder(folder)?;
     let (made, example) = job::work(&options.run, recipe.seed, |run| {
         let outputs = Outputs::prepare(&recipe.exports, folder)?;
@@ -78,16 +84,21 @@ pub fn run(matches: &ArgMatches, registry: &Registry) -> Result<(), Problem> {
     Ok(())
 }
 
-fn recipe(style: &str, seed: u64) -> Recipe {
+fn recipe(options: &Options) -> Recipe {
     let mut exports: Vec<Export> =
         FILES.iter().map(|file| Export { file: file.into(), ..Export::default() }).collect();
     if let Some(view) = exports.last_mut() {
         view.view = Some("3d".to_owned());
     }
+    let mut examples = options.examples.sources();
+    if examples.is_empty() {
+        let style = format!("{}{}", builtin::PREFIX, options.style);
+        examples.push(options.examples.part.apply(Source::new(style)));
+    }
     Recipe {
-        seed,
-        target: Some(Target::Size(Default::default())),
-        examples: vec![Source::new(format!("{}{style}", builtin::PREFIX))],
+        seed: options.seed,
+        target: Some(options.target.target()),
+        examples,
         steps: STEPS.into_iter().map(Step::new).collect(),
         exports,
         ..Recipe::default()
@@ -108,7 +119,11 @@ Open {dir}/city.gpkg in QGIS, {dir}/city.glb in Blender or a browser, {dir}/city
 
 Next, with a map of your own (.osm.pbf, .osm, .geojson, ...):
   exurb streets grow --example YOUR_MAP -o city.gpkg
-  exurb blocks parcels city.gpkg --example YOUR_MAP -o city.gpkg
+  exurb blocks auto city.gpkg --example YOUR_MAP -o city.gpkg
+  exurb buildings auto city.gpkg --example YOUR_MAP -o city.gpkg
+  exurb render city.gpkg --view 3d -o view.png
+or all of it at once, as here:
+  exurb demo --example YOUR_MAP --size 3000x2000 -o DIR
 Or change {dir}/recipe.toml and run it:
   exurb run {dir}/recipe.toml -o DIR"
     )

@@ -46,3 +46,14 @@ fn unknown_styles_are_refused() {
     exurb(folder.path(), &["demo", "--style", "atlantis"]).ends(2).says("helsinki");
     assert!(listing(folder.path()).is_empty());
 }
+
+#[test]
+fn the_demo_takes_a_map_of_ones_own() {
+    let folder = tempdir().unwrap();
+    exurb(folder.path(), &["export", "builtin:karhula", "-o", "mine.osm.pbf"]).ends(0);
+    let args = "demo --example mine.osm.pbf --size 700x500 -o city --json";
+    let report = exurb(folder.path(), &args.split(' ').collect::<Vec<_>>()).ends(0).json();
+    assert_eq!(report["area_km2"], 0.35);
+    assert_eq!(listing(&folder.path().join("city")), FILES);
+    exurb(folder.path(), &["demo", "--example", "a.osm", "--style", "grid"]).ends(2);
+}
