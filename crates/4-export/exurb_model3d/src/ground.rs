@@ -2,7 +2,7 @@
 //! decide which of two lies on top.
 
 use exurb_city::{Area, Block, BlockClass};
-use exurb_geom::{GridPoint, Polygon, overlay};
+use exurb_geom::{GridPoint, Polygon, SegmentIndex, overlay};
 use rayon::prelude::*;
 
 use crate::mesh::Facing;
@@ -21,7 +21,7 @@ pub fn layers(site: &Site) -> Vec<Layer> {
     let page = rectangle(site);
     let water: Vec<Area> = clipped(&city.water, &page);
     let land_use = clipped(&city.land_use, &page);
-    let wet: Vec<&Polygon> = water.iter().map(|a| &a.polygon).collect();
+    let wet = Wet::of(&water);
     let blocks: Vec<Part> =
         city.blocks.par_iter().map(|block| block_part(site, block, &land_use, &wet)).collect();
     let mut all_blocks = Part::new(Material::Plain);
@@ -32,6 +32,42 @@ pub fn layers(site: &Site) -> Vec<Layer> {
         land_use_layer(site, &land_use, &wet),
         Layer { name: "blocks", parts: vec![all_blocks] },
     ]
+}
+
+/// Water, and a way to tell what it does not touch.
+struct Wet<'a> {
+    areas: &'a [Area],
+    shores: SegmentIndex,
+}
+
+impl<'a> Wet<'a> {
+    fn of(areas: &'a [Area]) -> Self {
+        let mut shores = SegmentIndex::new(100.0);
+        for (area, i) in areas.iter().zip(0..) {
+            area.polygon.segments().for_each(|(a, b)| shores.insert(i, a.to_m(), b.to_m()));
+        }
+        Self { areas, shores }
+    }
+
+    fn polygons(&self) -> impl Iterator<Item = &'a Polygon> + Clone {
+        self.areas.iter().map(|a| &a.polygon)
+    }
+
+    /// What of a polygon lies on land. Most polygons are far from any shore: they need no overlay.
+    fn dry(&self, polygon: &Polygon) -> Vec<Polygon> {
+        let near = self.shores.ids(polygon.bounds());
+        let corner = polygon.exterior()[0];
+        // Areas whose shore is not near hold all of the polygon or none of it.
+        let is_sunk = |(area, i): (&Area, u32)| {
+            near.binary_search(&i).is_err()
+                && area.polygon.bounds().contains(corner.to_m())
+                && area.polygon.contains(corner)
+        };
+        if self.areas.iter().zip(0..).any(is_sunk) {
+            return Vec::new();
+        }
+        overlay::difference(polygon, near.iter().map(|i| &self.areas[*i as usize].polygon))
+    }
 }
 
 fn rectangle(site: &Site) -> Polygon {
@@ -53,10 +89,10 @@ fn clipped(areas: &[Area], page: &Polygon) -> Vec<Area> {
     out
 }
 
-fn ground(site: &Site, page: &Polygon, wet: &[&Polygon]) -> Layer {
+fn ground(site: &Site, page: &Polygon, wet: &Wet) -> Layer {
     let mut part = Part::new(Material::Plain);
     part.begin(0);
-    for piece in overlay::difference(page, wet.iter().copied()) {
+    for piece in overlay::difference(page, wet.polygons()) {
         part.mesh.horizontal(site.axes, &piece, GROUND_M, linear(GROUND), Facing::Up);
     }
     Layer { name: "ground", parts: vec![part] }
@@ -83,12 +119,13 @@ fn water_layer(site: &Site, water: &[Area]) -> Layer {
 
 /// Open ground between the blocks, or where there are none. Where areas overlap, the smaller one,
 /// later in the list, is seen.
-fn land_use_layer(site: &Site, land_use: &[Area], wet: &[&Polygon]) -> Layer {
+fn land_use_layer(site: &Site, land_use: &[Area], wet: &Wet) -> Layer {
     let seen: Vec<Vec<Polygon>> = (0..land_use.len())
         .into_par_iter()
         .map(|i| {
             let above = land_use[i + 1..].iter().map(|a| &a.polygon);
-            overlay::difference(&land_use[i].polygon, above.chain(wet.iter().copied()))
+            let seen = overlay::difference(&land_use[i].polygon, above);
+            seen.iter().flat_map(|piece| wet.dry(piece)).collect()
         })
         .collect();
     let mut part = Part::new(Material::Plain);
@@ -103,17 +140,16 @@ fn land_use_layer(site: &Site, land_use: &[Area], wet: &[&Polygon]) -> Layer {
 }
 
 /// Kerb, pavement, and behind it the ground by land use.
-fn block_part(site: &Site, block: &Block, land_use: &[Area], wet: &[&Polygon]) -> Part {
+fn block_part(site: &Site, block: &Block, land_use: &[Area], wet: &Wet) -> Part {
     let mut part = Part::new(Material::Plain);
     part.begin(block.id);
-    let dry = |polygon: &Polygon| overlay::difference(polygon, wet.iter().copied());
-    for piece in dry(&block.polygon) {
+    for piece in wet.dry(&block.polygon) {
         for (a, b) in piece.segments() {
             part.mesh.wall(site.axes, a.to_m(), b.to_m(), GROUND_M, BLOCK_M, linear(KERB));
         }
     }
     let mut top = |polygon: &Polygon, color| {
-        for piece in dry(polygon) {
+        for piece in wet.dry(polygon) {
             part.mesh.horizontal(site.axes, &piece, BLOCK_M, color, Facing::Up);
         }
     };

@@ -98,6 +98,17 @@ impl Map {
         let size = self.camera.width as i32;
         let Lens::Parallel { half_x, half_y } = self.camera.lens else { return self };
         let cell_m = [2.0 * half_x / size as f32, 2.0 * half_y / size as f32];
+        // Steps in cells, with their lengths; in eight directions all lengths are about the same.
+        let steps: Vec<Vec<(i32, i32, f32)>> = DIRECTIONS
+            .iter()
+            .map(|[dx, dy]| {
+                let diagonal = dx * dy != 0;
+                let share = if diagonal { std::f32::consts::FRAC_1_SQRT_2 } else { 1.0 };
+                let cells = |step_m: f32, k: usize| (step_m * share / cell_m[k]).round() as i32;
+                let step = |m: &f32| (cells(*m, 0) * dx, cells(*m, 1) * dy, *m);
+                STEPS_M.iter().map(step).filter(|(x, y, _)| (*x, *y) != (0, 0)).collect()
+            })
+            .collect();
         let at = |x: i32, y: i32| {
             let (x, y) = (x.clamp(0, size - 1), y.clamp(0, size - 1));
             self.values[(y * size + x) as usize]
@@ -105,21 +116,12 @@ impl Map {
         let open = |i: i32| {
             let (x, y) = (i % size, i / size);
             let here = at(x, y);
-            let mut sum = 0.0;
-            for [dx, dy] in DIRECTIONS {
-                let mut steepest: f32 = 0.0;
-                for step_m in STEPS_M {
-                    let length =
-                        if dx != 0 && dy != 0 { std::f32::consts::FRAC_1_SQRT_2 } else { 1.0 };
-                    let sx = (step_m * length / cell_m[0]).round() as i32 * dx;
-                    let sy = (step_m * length / cell_m[1]).round() as i32 * dy;
-                    if (sx, sy) != (0, 0) {
-                        steepest = steepest.max((at(x + sx, y + sy) - here) / step_m);
-                    }
-                }
-                sum += 1.0 / (1.0 + steepest * steepest);
-            }
-            sum / DIRECTIONS.len() as f32
+            let seen = steps.iter().map(|steps| {
+                let rises = steps.iter().map(|(dx, dy, m)| (at(x + dx, y + dy) - here) / m);
+                let steepest = rises.fold(0.0, f32::max);
+                1.0 / (1.0 + steepest * steepest)
+            });
+            seen.sum::<f32>() / DIRECTIONS.len() as f32
         };
         let values = (0..size * size).into_par_iter().map(open).collect();
         Self { camera: self.camera, values }

@@ -25,7 +25,7 @@ use crate::{Error, Options};
 use camera::Camera;
 use light::Light;
 use raster::{Bands, NOTHING};
-use shade::Shader;
+use shade::{Screen, Shader};
 use surface::Surfaces;
 
 /// Where a picture is taken from.
@@ -96,11 +96,12 @@ fn picture(city: &City, scene: &Scene, view: &View) -> Vec<u8> {
     let light = Light::of(&surfaces, view);
     let bands = Bands::of(&surfaces, &camera, samples as usize * ROWS_PER_BAND);
     let shader = Shader::new(&surfaces, &camera, &light);
+    let screen = Screen::new();
     let rows: Vec<Vec<u8>> = (0..bands.count())
         .into_par_iter()
         .map(|band| {
             let drawn = bands.draw(band);
-            resolve(&drawn, &shader, &camera, samples as usize)
+            resolve(&drawn, &shader, &screen, &camera, samples as usize)
         })
         .collect();
     rows.concat()
@@ -111,7 +112,13 @@ const ROWS_PER_BAND: usize = 16;
 
 /// Pixels of a band: every surface among a pixel's samples is shaded once and weighs by its
 /// samples.
-fn resolve(drawn: &raster::Drawn, shader: &Shader, camera: &Camera, samples: usize) -> Vec<u8> {
+fn resolve(
+    drawn: &raster::Drawn,
+    shader: &Shader,
+    screen: &Screen,
+    camera: &Camera,
+    samples: usize,
+) -> Vec<u8> {
     let (width, rows) = (camera.width / samples, drawn.rows.len() / samples);
     let mut out = Vec::with_capacity(width * rows * 3);
     let per_pixel = (samples * samples) as f32;
@@ -138,7 +145,7 @@ fn resolve(drawn: &raster::Drawn, shader: &Shader, camera: &Camera, samples: usi
                 let place = [at % camera.width, row];
                 sum += shader.color(*triangle, place, drawn.nearness[*at]) * (weight / per_pixel);
             }
-            out.extend(shade::to_screen(sum));
+            out.extend(screen.of(sum));
         }
     }
     out

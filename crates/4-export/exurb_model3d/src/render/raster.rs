@@ -179,10 +179,18 @@ impl Slope {
     }
 }
 
+/// The first sample whose middle lies at `v` or past it, up to `count`. (Cheaper than `ceil`, which
+/// is a call where the processor is not known to have it.)
+fn first_past(v: f32, count: usize) -> usize {
+    let shifted = (v - 0.5).clamp(0.0, count as f32);
+    let floor = shifted as usize;
+    floor + usize::from(shifted > floor as f32)
+}
+
 /// Rows whose middles the triangle covers.
 fn row_range(triangle: &Placed, height: usize) -> [usize; 2] {
     let [first, _, last] = triangle.corners;
-    let clamp = |y: f32| (y - 0.5).ceil().clamp(0.0, height as f32) as usize;
+    let clamp = |y: f32| first_past(y, height);
     [clamp(first[1]), clamp(last[1])]
 }
 
@@ -194,7 +202,7 @@ fn columns(triangle: &Placed, row: usize, width: usize) -> Option<Range<usize>> 
     let cross = |p: [f32; 3], q: [f32; 3]| p[0] + (y - p[1]) * ((q[0] - p[0]) / (q[1] - p[1]));
     let long = cross(a, c);
     let short = if y < b[1] { cross(a, b) } else { cross(b, c) };
-    let clamp = |x: f32| (x - 0.5).ceil().clamp(0.0, width as f32) as usize;
+    let clamp = |x: f32| first_past(x, width);
     let (from, to) = (clamp(long.min(short)), clamp(long.max(short)));
     (from < to).then_some(from..to)
 }

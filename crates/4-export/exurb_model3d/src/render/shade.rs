@@ -127,14 +127,28 @@ fn sky(ray: Vec3) -> Vec3 {
     HAZE.lerp(ZENITH, share)
 }
 
-/// Linear light → screen: highlights roll off, shadows stay.
-pub fn to_screen(light: Vec3) -> [u8; 3] {
-    let exposed = light * 0.8;
-    let rolled = exposed * (Vec3::ONE + exposed / 6.0) / (Vec3::ONE + exposed);
-    // What rolling off takes from colours and darks comes back.
-    let grey = Vec3::splat(rolled.dot(Vec3::new(0.21, 0.72, 0.07)));
-    let vivid = grey + (rolled - grey) * 1.1;
-    let rolled = vivid * (Vec3::splat(0.82) + vivid * 0.3);
-    [rolled.x, rolled.y, rolled.z]
-        .map(|v| (to_srgb(f64::from(v.clamp(0.0, 1.0))) * 255.0).round() as u8)
+/// Linear light → screen values, from a table.
+pub struct Screen {
+    values: Vec<u8>,
+}
+
+impl Screen {
+    pub fn new() -> Self {
+        const STEPS: u32 = 4096;
+        let value = |i: u32| to_srgb(f64::from(i) / f64::from(STEPS - 1)) * 255.0;
+        Self { values: (0..STEPS).map(|i| value(i).round() as u8).collect() }
+    }
+
+    /// Highlights roll off, shadows stay.
+    pub fn of(&self, light: Vec3) -> [u8; 3] {
+        let exposed = light * 0.8;
+        let rolled = exposed * (Vec3::ONE + exposed / 6.0) / (Vec3::ONE + exposed);
+        // What rolling off takes from colours and darks comes back.
+        let grey = Vec3::splat(rolled.dot(Vec3::new(0.21, 0.72, 0.07)));
+        let vivid = grey + (rolled - grey) * 1.1;
+        let toned = vivid * (Vec3::splat(0.82) + vivid * 0.3);
+        let last = (self.values.len() - 1) as f32;
+        let index = (toned.clamp(Vec3::ZERO, Vec3::ONE) * last).to_array();
+        index.map(|v| self.values[(v + 0.5) as usize])
+    }
 }
