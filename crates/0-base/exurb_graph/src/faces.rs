@@ -3,9 +3,9 @@
 //! A face lies to the left of its darts. The walk turns as sharply left as it can at every node
 //! (half-edges sorted by angle), so that bounded faces come out counter-clockwise and the outside of
 //! every component clockwise. Dead ends are walked up and down; they stay inside their face and are
-//! not part of its outline. O(n log n) in edges, plus O(islands · faces near).
+//! not part of its outline. O(n log n) in edges, plus O(points of the faces around) per island.
 
-use exurb_geom::{GridPoint, Polygon, polygon::signed_area_m2};
+use exurb_geom::{BoxGrid, GridPoint, Polygon, polygon::signed_area_m2};
 
 use crate::{Dart, EdgeId, Graph};
 
@@ -57,27 +57,35 @@ impl Faces {
 
         let mut left = vec![None; next.len()];
         let mut list: Vec<Face> = Vec::new();
-        let mut outsides: Vec<(Vec<Vec<Dart>>, Vec<EdgeId>, Dart)> = Vec::new();
+        let mut outsides: Vec<Outside> = Vec::new();
         for walk in walks {
             let (inner, cycles) = strip_dead_ends(graph, &walk);
             // A walk that touches a node twice falls into cycles; the left of a bounded face is
-            // inside exactly one of them.
-            let (outer, islands): (Vec<_>, Vec<_>) =
-                cycles.into_iter().partition(|c| ring_area(graph, c) > 0.0);
-            let holes = || islands.iter().map(|c| ring(graph, c)).collect();
-            let polygon = outer.first().and_then(|cycle| Polygon::new(ring(graph, cycle), holes()));
-            match polygon {
-                Some(polygon) => {
-                    let id = FaceId(list.len() as u32);
-                    for dart in &walk {
-                        left[dart.index()] = Some(id);
-                    }
-                    let mut outer = outer.into_iter();
-                    let outline = outer.next().unwrap_or_default();
-                    list.push(Face { polygon, outline, islands, inner });
+            // inside exactly one of them. Between edges drawn twice there is nothing.
+            let (mut outer, mut islands, mut nothing) = (None, Vec::new(), inner.is_empty());
+            for cycle in cycles {
+                let ring = ring(graph, &cycle);
+                let area_m2 = signed_area_m2(&ring);
+                if area_m2 > 0.0 && outer.is_none() {
+                    outer = Some((cycle, ring));
+                } else {
+                    nothing &= area_m2 == 0.0;
+                    islands.push((cycle, ring));
                 }
-                None => outsides.push((islands, inner, walk[0])),
             }
+            let (islands, holes): (Vec<_>, Vec<_>) = islands.into_iter().unzip();
+            let Some((outline, ring)) = outer else {
+                if !nothing {
+                    outsides.push(Outside { islands, holes, inner, first: walk[0] });
+                }
+                continue;
+            };
+            let Some(polygon) = Polygon::new(ring, holes) else { continue };
+            let id = FaceId(list.len() as u32);
+            for dart in &walk {
+                left[dart.index()] = Some(id);
+            }
+            list.push(Face { polygon, outline, islands, inner });
         }
         place_islands(graph, &mut list, &mut left, outsides);
         Self { list, left }
@@ -135,8 +143,12 @@ fn ring<N, E>(graph: &Graph<N, E>, cycle: &[Dart]) -> Vec<GridPoint> {
     out
 }
 
-fn ring_area<N, E>(graph: &Graph<N, E>, cycle: &[Dart]) -> f64 {
-    signed_area_m2(&ring(graph, cycle))
+/// The walk around a component from outside: cycles with their rings, and what is walked both ways.
+struct Outside {
+    islands: Vec<Vec<Dart>>,
+    holes: Vec<Vec<GridPoint>>,
+    inner: Vec<EdgeId>,
+    first: Dart,
 }
 
 /// Puts each component into the smallest face that holds it.
@@ -144,36 +156,47 @@ fn place_islands<N, E>(
     graph: &Graph<N, E>,
     list: &mut [Face],
     left: &mut [Option<FaceId>],
-    outsides: Vec<(Vec<Vec<Dart>>, Vec<EdgeId>, Dart)>,
+    outsides: Vec<Outside>,
 ) {
     if outsides.len() < 2 {
         return;
     }
-    let boxes: Vec<_> = list.iter().map(|f| (f.polygon.bounds(), f.polygon.area_m2())).collect();
-    for (cycles, inner, first) in outsides {
-        let at = graph.node(graph.tail(first)).at;
-        let own = |face: &Face| face.outline.iter().any(|d| graph.node(graph.tail(*d)).at == at);
-        let home = (0..list.len())
-            .filter(|i| boxes[*i].0.contains(at.to_m()))
-            .filter(|i| list[*i].polygon.contains(at) && !own(&list[*i]))
-            .filter(|i| !on_boundary(&list[*i].polygon, at))
-            .min_by(|i, j| boxes[*i].1.total_cmp(&boxes[*j].1));
-        let Some(home) = home else { continue };
-        for dart in cycles.iter().flatten() {
-            left[dart.index()] = Some(FaceId(home as u32));
+    let boxes = BoxGrid::of(list.iter().map(|f| &f.polygon));
+    let areas: Vec<f64> = list.iter().map(|f| f.polygon.area_m2()).collect();
+    let mut around = Vec::new();
+    let mut homes: Vec<(usize, Outside)> = Vec::new();
+    for outside in outsides {
+        let at = graph.node(graph.tail(outside.first)).at;
+        boxes.meeting(at, at, &mut around);
+        let home = around
+            .iter()
+            .map(|i| *i as usize)
+            .filter(|i| list[*i].polygon.contains(at) && !on_boundary(&list[*i].polygon, at))
+            .min_by(|i, j| areas[*i].total_cmp(&areas[*j]));
+        if let Some(home) = home {
+            homes.push((home, outside));
         }
-        for edge in &inner {
-            left[edge.forward().index()] = Some(FaceId(home as u32));
-            left[edge.backward().index()] = Some(FaceId(home as u32));
+    }
+    homes.sort_by_key(|(home, _)| *home);
+    for in_one in homes.chunk_by_mut(|a, b| a.0 == b.0) {
+        let home = in_one[0].0;
+        let id = Some(FaceId(home as u32));
+        let mut holes: Vec<Vec<GridPoint>> = list[home].polygon.interiors().to_vec();
+        for (_, outside) in in_one {
+            for dart in outside.islands.iter().flatten() {
+                left[dart.index()] = id;
+            }
+            for edge in &outside.inner {
+                left[edge.forward().index()] = id;
+                left[edge.backward().index()] = id;
+            }
+            holes.append(&mut outside.holes);
+            list[home].islands.append(&mut outside.islands);
+            list[home].inner.append(&mut outside.inner);
         }
-        let face = &mut list[home];
-        let mut holes: Vec<Vec<GridPoint>> = face.polygon.interiors().to_vec();
-        holes.extend(cycles.iter().map(|c| ring(graph, c)));
-        if let Some(polygon) = Polygon::new(face.polygon.exterior().to_vec(), holes) {
-            face.polygon = polygon;
+        if let Some(polygon) = Polygon::new(list[home].polygon.exterior().to_vec(), holes) {
+            list[home].polygon = polygon;
         }
-        face.islands.extend(cycles);
-        face.inner.extend(inner);
     }
 }
 

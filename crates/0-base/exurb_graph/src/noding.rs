@@ -24,7 +24,8 @@ pub struct Line<T> {
 /// How linework is noded.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
-    /// A line's vertex nearer than this to another line becomes a shared vertex of both. Metres.
+    /// A line's vertex nearer than this to another line becomes a shared vertex of both; vertices
+    /// nearer than one and a half times this to each other become one. Metres.
     pub snap_m: f64,
     /// Rounds at most. Enough is enough: what is left is reported by the city's laws.
     pub max_rounds: usize,
@@ -44,7 +45,7 @@ pub fn node<T: Clone>(lines: Vec<Line<T>>, options: Options) -> Vec<Line<T>> {
         lines.into_iter().map(|line| Noded { line, changed: true }).collect();
     for _ in 0..options.max_rounds {
         if options.snap_m > 0.0 {
-            gather_vertices(&mut lines, options.snap_m);
+            gather_vertices(&mut lines, options.snap_m * GATHER);
         }
         let cuts = find_cuts(&lines, options.snap_m);
         let done = cuts.iter().all(Vec::is_empty);
@@ -56,22 +57,26 @@ pub fn node<T: Clone>(lines: Vec<Line<T>>, options: Options) -> Vec<Line<T>> {
     lines.into_iter().map(|noded| noded.line).collect()
 }
 
+/// Vertices are gathered from this many times as far as lines are drawn to them. With less, two
+/// vertices beside a third could draw each other's lines back and forth for ever.
+const GATHER: f64 = 1.5;
+
 /// A line, and whether the last round changed it.
 struct Noded<T> {
     line: Line<T>,
     changed: bool,
 }
 
-/// Step 1: of vertices within `snap_m` of each other and on a common level, all move onto the first
+/// Step 1: of vertices within `reach_m` of each other and on a common level, all move onto the first
 /// by coordinates; whatever else stands there moves along.
-fn gather_vertices<T>(lines: &mut Vec<Noded<T>>, snap_m: f64) {
+fn gather_vertices<T>(lines: &mut Vec<Noded<T>>, reach_m: f64) {
     let mut vertices: Vec<(GridPoint, i32)> = lines
         .iter()
         .flat_map(|noded| noded.line.points.iter().map(|p| (*p, noded.line.level)))
         .collect();
     vertices.sort_unstable();
     vertices.dedup();
-    let snap_mm = (snap_m * 1000.0).ceil() as i32;
+    let reach_mm = (reach_m * 1000.0).ceil() as i32;
     let mut moved: Vec<(GridPoint, GridPoint)> = Vec::new();
     let mut gone = vec![false; vertices.len()];
     for i in 0..vertices.len() {
@@ -81,10 +86,10 @@ fn gather_vertices<T>(lines: &mut Vec<Noded<T>>, snap_m: f64) {
         }
         for j in i + 1..vertices.len() {
             let (q, other_level) = vertices[j];
-            if q.x - p.x > snap_mm {
+            if q.x - p.x > reach_mm {
                 break;
             }
-            if p != q && level == other_level && !gone[j] && p.distance_m(q) < snap_m {
+            if p != q && level == other_level && !gone[j] && p.distance_m(q) < reach_m {
                 gone[j] = true;
                 moved.push((q, p));
             }
@@ -168,6 +173,12 @@ fn cut_pair<T>(
     let (a, b) = (lines[l].line.points[s], lines[l].line.points[s + 1]);
     let (c, d) = (lines[m].line.points[t], lines[m].line.points[t + 1]);
     let adjacent = l == m && (s + 1 == t || t + 1 == s);
+    if adjacent {
+        let tip = s.max(t);
+        if folds_at(&lines[l].line.points, tip) {
+            split_at_vertex(&mut cuts[l], lines, l, tip, lines[l].line.points[tip]);
+        }
+    }
     let snap_m = if adjacent { 0.0 } else { snap_m };
     let mut touching = false;
     for (p, vertex) in [(c, t), (d, t + 1)] {
@@ -198,6 +209,13 @@ fn cut_pair<T>(
             }
         }
     }
+}
+
+/// Does the line turn right back at its vertex `tip`?
+fn folds_at(points: &[GridPoint], tip: usize) -> bool {
+    let (before, at, after) = (points[tip - 1], points[tip], points[tip + 1]);
+    let (u, v) = (before.to_m() - at.to_m(), after.to_m() - at.to_m());
+    grid::orient(at, before, after) == 0 && u.dot(v) > 0.0
 }
 
 /// The proper crossing of two segments on the grid, the same bits in whatever order and direction.

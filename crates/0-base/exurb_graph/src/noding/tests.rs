@@ -63,3 +63,10 @@ fn vertices_beside_each_other_become_one() {
     assert_eq!(noded.len(), 2);
     assert_eq!(noded[0].points[1], noded[1].points[0]);
 }
+
+#[test]
+fn a_fold_is_split_at_its_tip_and_a_straight_line_is_not() {
+    assert_eq!(node(vec![line(&[(0., 0.), (9., 0.), (0., 0.)], 0)], Options::default()).len(), 2);
+    assert_eq!(node(vec![line(&[(0., 0.), (9., 0.), (4., 0.)], 0)], Options::default()).len(), 3);
+    assert_eq!(node(vec![line(&[(0., 0.), (4., 0.), (9., 0.)], 0)], Options::default()).len(), 1);
+}
