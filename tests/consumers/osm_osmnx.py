@@ -18,8 +18,9 @@ def main(xml, geojson):
 
     simple = networkx.Graph(graph)
     degrees = {n: d for n, d in graph.degree() if d != 2}
-    cuts = sum(bool(f["properties"].get("cut")) for f in elements(city, "intersection"))
-    wanted = len(elements(city, "intersection"))
+    junctions = [f["properties"] for f in elements(city, "intersection")]
+    cuts = sum(bool(junction.get("cut")) for junction in junctions)
+    wanted = sum(junction["degree"] != 2 for junction in junctions)
     # A loop's own node has degree 2 here and may be an intersection there.
     assert abs(len(degrees) - wanted) <= 0.01 * wanted, f"{len(degrees)} intersections, not {wanted}"
     largest = max(networkx.connected_components(simple), key=len)
