@@ -7,8 +7,8 @@ pub fn over(limit: u64) -> Option<String> {
     (used > limit).then(|| {
         format!(
             "memory use of {} passed --max-memory {}; take a smaller target or example, or raise the limit",
-            megabytes(used),
-            megabytes(limit)
+            mebibytes(used),
+            mebibytes(limit)
         )
     })
 }
@@ -20,6 +20,6 @@ fn used() -> Option<u64> {
     Some(kilobytes * 1024)
 }
 
-fn megabytes(bytes: u64) -> String {
-    format!("{:.0} MB", bytes as f64 / 1e6)
+fn mebibytes(bytes: u64) -> String {
+    format!("{} MiB", bytes >> 20)
 }
