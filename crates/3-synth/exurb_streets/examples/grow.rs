@@ -19,6 +19,12 @@ fn main() {
     let h = size / 2.0;
     let target = Polygon::rectangle(GridPoint::m(c.x - h, c.y - h), GridPoint::m(c.x + h, c.y + h));
     let city = City::empty(example.frame.clone(), target);
+    let example_density = example.streets.length_m() / 1000.0 / example.area_km2();
+    let g = &example.streets;
+    let main = g
+        .edges()
+        .filter(|(_, e)| e.data.role() == exurb_city::Role::Main && !e.data.class.is_given_only());
+    let example_main = main.map(|(_, e)| e.length_m()).sum::<f64>() / g.length_m();
     let operation = erase::<exurb_streets::grow::Grow>();
     let run = Run::new(seed);
     let outcome =
@@ -34,6 +40,19 @@ fn main() {
         outcome.seconds.learn,
         outcome.seconds.synthesise,
         km / (outcome.seconds.learn + outcome.seconds.synthesise),
+    );
+    let main_share = |g: &exurb_city::StreetGraph| {
+        let main = g.edges().filter(|(_, e)| {
+            e.data.role() == exurb_city::Role::Main && !e.data.class.is_given_only()
+        });
+        main.map(|(_, e)| e.length_m()).sum::<f64>() / g.length_m()
+    };
+    println!(
+        "   main share {:.2} of example {:.2}; km/km2 {:.1} of {:.1}",
+        main_share(streets),
+        example_main,
+        km / outcome.city.area_km2(),
+        example_density
     );
     let report = exurb_city::laws::laws(&outcome.city);
     for law in report.laws.iter().filter(|l| !l.pass) {

@@ -18,7 +18,8 @@ mod tests;
 use exurb_city::{
     Block, BlockClass, City, Class, Edit, Feature, FeatureShape, Origin, Provenance, area, block,
 };
-use exurb_geom::{Bounds, BoxGrid, GridPoint, Polygon, SegmentIndex, Vec2, polyline};
+use exurb_geom::{Bounds, BoxGrid, GridPoint, Polygon, SegmentGrid, SegmentIndex, Vec2, polyline};
+use exurb_graph::EdgeId;
 use exurb_operation::{Card, Example, Failure, Operation, Run, Scope, rng};
 use rand::RngExt;
 use rayon::prelude::*;
@@ -100,6 +101,9 @@ fn is_held(city: &City, block: &Block, scope: &Scope) -> bool {
         }
 }
 
+/// Half of the widest street and its pavement, in metres.
+const WIDEST_M: f64 = 30.0;
+
 /// What all blocks share.
 struct Site<'a> {
     city: &'a City,
@@ -110,6 +114,8 @@ struct Site<'a> {
     land_use: BoxGrid,
     water: BoxGrid,
     there: Vec<Vec2>,
+    /// Streets that bound blocks or end in them.
+    streets: SegmentIndex,
     /// Streets that pass over or under blocks.
     over: SegmentIndex,
 }
@@ -123,11 +129,10 @@ impl<'a> Site<'a> {
         features: &[Feature],
     ) -> Self {
         let bounding = block::bounding_edges(&city.streets);
-        let mut over = SegmentIndex::new(50.0);
-        for (id, edge) in city.streets.edges() {
-            if !bounding[id.index()] && !edge.data.tunnel {
-                over.insert_line(id.0, &edge.line_m());
-            }
+        let (mut streets, mut over) = (SegmentIndex::new(50.0), SegmentIndex::new(50.0));
+        for (id, edge) in city.streets.edges().filter(|(_, e)| !e.data.tunnel) {
+            let index = if bounding[id.index()] { &mut streets } else { &mut over };
+            index.insert_line(id.0, &edge.line_m());
         }
         let point = |f: &Feature| match &f.shape {
             FeatureShape::Point(p) => Some(p.to_m()),
@@ -142,6 +147,7 @@ impl<'a> Site<'a> {
             land_use: BoxGrid::of(city.land_use.iter().map(|a| &a.polygon)),
             water: BoxGrid::of(city.water.iter().map(|a| &a.polygon)),
             there: features.iter().filter_map(point).collect(),
+            streets,
             over,
         }
     }
@@ -152,10 +158,11 @@ impl<'a> Site<'a> {
         let mut near = Vec::new();
         self.buildings.meeting_polygon(&block.polygon, &mut near);
         let buildings = near.iter().map(|n| &self.city.buildings[*n as usize].polygon).collect();
-        let street_has = |kind, p| self.street_has(block, kind, p);
+        let street_has = |kind, p| self.street_has(kind, p);
         let is_taken = |p| self.is_taken(p);
         let ground = Ground {
             block: &block.polygon,
+            kerb: SegmentGrid::new(block.polygon.segments().collect()),
             pavement_m: block.pavement_m,
             buildings,
             street_has: &street_has,
@@ -180,13 +187,18 @@ impl<'a> Site<'a> {
     }
 
     /// Has the street at the kerb near `p` such things? Both sides of a street draw alike.
-    fn street_has(&self, block: &Block, kind: Kind, p: Vec2) -> bool {
-        let edges = block.sides.iter().chain(&block.dead_ends);
-        let nearest = edges
-            .filter_map(|id| self.city.streets.get_edge(*id))
-            .map(|edge| (polyline::distance(&edge.line_m(), p), edge))
-            .min_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((_, edge)) = nearest else { return false };
+    fn street_has(&self, kind: Kind, p: Vec2) -> bool {
+        let mut nearest: Option<(f64, u32)> = None;
+        self.streets.visit(Bounds { min: p, max: p }.grown(WIDEST_M), |e| {
+            let distance = polyline::nearest_on_segment(e.a, e.b, p).0.distance(p);
+            let nearer = |(least, id): (f64, u32)| (distance, e.id) < (least, id);
+            if nearest.is_none_or(nearer) {
+                nearest = Some((distance, e.id));
+            }
+            true
+        });
+        let edge = nearest.and_then(|(_, id)| self.city.streets.get_edge(EdgeId(id)));
+        let Some(edge) = edge else { return false };
         if edge.data.class.is_given_only() || edge.data.class == Class::Service {
             return false;
         }

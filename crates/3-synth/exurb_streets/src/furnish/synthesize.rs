@@ -1,6 +1,6 @@
 //! The pure core: one block's kerb and open ground → trees and lamps.
 
-use exurb_geom::{GridPoint, PointIndex, Polygon, Vec2, offset, polyline, trig};
+use exurb_geom::{GridPoint, PointIndex, Polygon, SegmentGrid, Vec2, offset, polyline, trig};
 use exurb_operation::Rng;
 use rand::RngExt;
 
@@ -20,6 +20,8 @@ pub enum Kind {
 pub struct Ground<'a> {
     /// Kerb line of the block.
     pub block: &'a Polygon,
+    /// Its segments.
+    pub kerb: SegmentGrid,
     /// Width of its pavement in metres.
     pub pavement_m: f64,
     /// Buildings nearby.
@@ -30,6 +32,18 @@ pub struct Ground<'a> {
     pub is_taken: &'a dyn Fn(Vec2) -> bool,
 }
 
+impl Ground<'_> {
+    fn is_at_kerb(&self, p: Vec2) -> bool {
+        let at = GridPoint::round(p);
+        let mut near = Vec::new();
+        self.kerb.near(at, at, (LEAST_KERB_M * 1000.0) as i32, &mut near);
+        near.iter().any(|id| {
+            let (a, b) = self.kerb.segment(*id);
+            polyline::nearest_on_segment(a.to_m(), b.to_m(), p).0.distance(p) < LEAST_KERB_M
+        })
+    }
+}
+
 /// Trees stand this far behind the kerb, lamps somewhat more, in metres.
 const TREE_M: f64 = 1.0;
 const LAMP_M: f64 = 1.5;
@@ -37,8 +51,8 @@ const LAMP_M: f64 = 1.5;
 const LEAST_KERB_M: f64 = 0.4;
 /// Nothing stands this near to a corner, in metres.
 const CORNER_M: f64 = 4.0;
-/// A block gets no more park trees than this.
-const MOST_TREES: f64 = 20_000.0;
+/// No more trees are tried in one area of a block.
+const MOST_TREES: f64 = 50_000.0;
 
 /// Trees and lamps of one block, in order of placing.
 pub struct Standing {
@@ -65,8 +79,8 @@ impl Standing {
                 && (b.contains(at) || b.boundary_distance_m(p) < params.building_distance)
         };
         let free = self.index.nearest(p, self.min_distance_m).is_none()
+            && !ground.is_at_kerb(p)
             && ground.block.contains(at)
-            && ground.block.boundary_distance_m(p) >= LEAST_KERB_M
             && !ground.buildings.iter().any(by_building)
             && !(ground.is_taken)(p);
         if free {
@@ -94,13 +108,12 @@ impl Standing {
         let spacing_m = (row.spacing_m / factor).max(self.min_distance_m);
         for strip in offset::inset(ground.block, behind) {
             for ring in strip.rings() {
-                let mut line = polyline::to_m(ring);
-                line.extend(line.first().copied());
-                let length = polyline::length(&line);
+                let line = Loop::of(ring);
+                let length = line.length_m();
                 let mut at = spacing_m * rng.random::<f64>();
                 while at < length {
-                    let p = polyline::point_at(&line, at);
-                    if !near_corner(&line, at, length) && (ground.street_has)(kind, p) {
+                    let p = line.point_at(at);
+                    if !line.turns_near(at) && (ground.street_has)(kind, p) {
                         self.try_add(kind, p, ground, params);
                     }
                     at += spacing_m * rng.random_range(0.8..1.2);
@@ -118,13 +131,13 @@ impl Standing {
         params: &Params,
         rng: &mut Rng,
     ) {
-        let bounds = area.bounds();
-        let wanted = (area.area_m2() * per_m2).min(MOST_TREES);
-        // The box holds more ground than the area: as many tries as give the density.
-        let tries = wanted * bounds.size().x * bounds.size().y / area.area_m2().max(1.0);
-        for _ in 0..tries.min(MOST_TREES * 10.0).round() as usize {
-            let t = Vec2::new(rng.random(), rng.random());
-            let p = bounds.min + bounds.size() * t;
+        // Only where the box of the area and that of the block meet.
+        let (area_box, block_box) = (area.bounds(), ground.block.bounds());
+        let low = area_box.min.max(block_box.min);
+        let size = (area_box.max.min(block_box.max) - low).max(Vec2::ZERO);
+        let tries = (size.x * size.y * per_m2).min(MOST_TREES);
+        for _ in 0..tries.round() as usize {
+            let p = low + size * Vec2::new(rng.random(), rng.random());
             if area.contains(GridPoint::round(p)) {
                 self.try_add(Kind::Tree, p, ground, params);
             }
@@ -132,10 +145,43 @@ impl Standing {
     }
 }
 
-/// Does the line turn a corner within reach of `at_m`?
-fn near_corner(line: &[Vec2], at_m: f64, length_m: f64) -> bool {
-    let point = |s: f64| polyline::point_at(line, s.rem_euclid(length_m));
-    let p = point(at_m);
-    let (before, after) = (p - point(at_m - CORNER_M), point(at_m + CORNER_M) - p);
-    trig::angle_between(before, after) > 0.5
+/// A closed line with positions along it.
+struct Loop {
+    points: Vec<Vec2>,
+    starts_m: Vec<f64>,
+}
+
+impl Loop {
+    fn of(ring: &[GridPoint]) -> Self {
+        let mut points = polyline::to_m(ring);
+        points.extend(points.first().copied());
+        let mut at = 0.0;
+        let mut starts_m = vec![0.0];
+        for w in points.windows(2) {
+            at += w[0].distance(w[1]);
+            starts_m.push(at);
+        }
+        Self { points, starts_m }
+    }
+
+    fn length_m(&self) -> f64 {
+        self.starts_m[self.starts_m.len() - 1]
+    }
+
+    fn point_at(&self, at_m: f64) -> Vec2 {
+        let at = at_m.rem_euclid(self.length_m());
+        let after = self.starts_m.partition_point(|s| *s <= at);
+        let i = after.saturating_sub(1).min(self.points.len() - 2);
+        let step = self.starts_m[i + 1] - self.starts_m[i];
+        let t = if step > 0.0 { (at - self.starts_m[i]) / step } else { 0.0 };
+        self.points[i].lerp(self.points[i + 1], t.clamp(0.0, 1.0))
+    }
+
+    /// Does it turn a corner within reach of `at_m`?
+    fn turns_near(&self, at_m: f64) -> bool {
+        let p = self.point_at(at_m);
+        let before = p - self.point_at(at_m - CORNER_M);
+        let after = self.point_at(at_m + CORNER_M) - p;
+        trig::angle_between(before, after) > 0.5
+    }
 }

@@ -13,11 +13,13 @@ use exurb_operation::{Rng, Run, rng};
 use rayon::prelude::*;
 
 use super::error::Error;
+use super::fill;
 use super::growth::{Growth, Place};
 use super::layer::NodeKind;
 use super::learn::Vocabulary;
 use super::network::{Network, Piece, Vertex};
 use super::params::Params;
+use super::synthesize::{self, Start};
 
 /// Distance between the nodes of a main street where local streets may end.
 const BERTH_M: f64 = 18.0;
@@ -58,7 +60,7 @@ pub fn grow(
     main: &Network,
     area: &Polygon,
     examples: &[&Vocabulary],
-    starts: &[(GridPoint, Vec2)],
+    starts: &[Start],
     params: &Params,
     run: &Run,
 ) -> Result<Vec<Grown>, Error> {
@@ -75,12 +77,18 @@ pub fn grow(
         .par_iter()
         .map(|face| {
             let rng = cell_stream(face, run);
-            let (net, seeds) =
-                open_cell(main, &graph, &kinds, &at, face, examples, starts, rng.clone());
+            let (net, seeds) = open_cell(main, &graph, &kinds, &at, face, examples, rng.clone());
             let mut growth = Growth::new(net, examples, false, &face.polygon, params, rng);
             growth.queue.extend(seeds);
-            begin(&mut growth);
+            if main.graph.edge_count() == 0 {
+                for (number, start) in starts.iter().enumerate() {
+                    synthesize::begin(&mut growth, number, start);
+                }
+            }
             growth.run(run)?;
+            if let Some(example) = examples.first() {
+                fill::fill(&mut growth, example.local.empty_m, run)?;
+            }
             Ok(harvest(&growth.net))
         })
         .collect();
@@ -89,23 +97,6 @@ pub fn grow(
         out.extend(cell?);
     }
     Ok(out)
-}
-
-/// Starts that lie in a cell grow by continuation whatever the draw says.
-fn begin(growth: &mut Growth) {
-    let nodes: Vec<NodeId> = growth
-        .queue
-        .iter()
-        .filter_map(|p| if let Place::Node(n) = p { Some(*n) } else { None })
-        .filter(|n| growth.net.graph.degree(*n) == 0)
-        .collect();
-    for node in nodes {
-        let vertex = growth.net.graph.node(node).data.clone();
-        let own = vertex.link.and_then(|l| growth.style(vertex.start).layer.of_example[l.index()]);
-        if let Some(own) = own {
-            super::placing::continuation(growth, node, own);
-        }
-    }
 }
 
 fn cell_stream(face: &Face, run: &Run) -> Rng {
@@ -144,7 +135,6 @@ fn border_graph(
 }
 
 /// The cell's border as a network, and the places where its local streets begin.
-#[expect(clippy::too_many_arguments, reason = "all of it is context of one loop")]
 fn open_cell(
     main: &Network,
     graph: &Graph<(), Option<EdgeId>>,
@@ -152,7 +142,6 @@ fn open_cell(
     at: &BTreeMap<GridPoint, NodeId>,
     face: &Face,
     examples: &[&Vocabulary],
-    starts: &[(GridPoint, Vec2)],
     mut rng: Rng,
 ) -> (Network, Vec<Place>) {
     let street_m = examples.first().map_or(100.0, |e| e.local.statistics.length_mean_m);
@@ -189,17 +178,6 @@ fn open_cell(
         branches(&net, node, face, examples, &mut places);
     }
     spaced(&net, face, graph, &local, examples, &mut rng, &mut places);
-    for (i, (start, source)) in starts.iter().enumerate() {
-        let style = &examples[i].local;
-        if face.polygon.contains(*start)
-            && main.graph.edge_count() == 0
-            && let Some(own) = style.nearest_start(*source)
-        {
-            let link = Some(style.layer.nodes[own].example);
-            let node = net.add_node(*start, Vertex { link, start: i, ..Vertex::default() });
-            places.push(Place::Node(node));
-        }
-    }
     (net, places)
 }
 

@@ -5,15 +5,15 @@ use std::sync::Arc;
 
 use exurb_city::street_graph::StreetGraph;
 use exurb_city::{City, Role};
-use exurb_geom::{GridPoint, LonLat, Polygon, Vec2, polyline};
+use exurb_geom::{GridPoint, LonLat, Polygon, SegmentIndex, Vec2, polyline};
 use exurb_graph::NodeId;
 use exurb_measure::statistics::{StreetStatistics, street_statistics};
 
 use super::error::Error;
-use super::layer::{ChainEnd, Layer, NodeKind};
+use super::layer::{ChainEnd, Layer};
 use super::params::{self, Params};
 use super::patch::{self, Patch};
-use super::{detect, prepare};
+use super::{detect, fill, prepare};
 
 /// What one example teaches.
 #[derive(Debug)]
@@ -41,6 +41,8 @@ pub struct Style {
     pub connectors: Connectors,
     /// Mean and variance of length and curvature.
     pub statistics: StreetStatistics,
+    /// A place farther from these streets (for local ones: from all streets) is empty. Metres.
+    pub empty_m: f64,
 }
 
 /// Connectors by the displacement from their tip to their root, so that those that could continue a
@@ -150,7 +152,14 @@ pub fn learn(city: &City, params: &Params) -> Result<Vocabulary, Error> {
         let patches = patch::extract(&mut layer, &[&kept, &circles], reach_m, word);
         let connectors = Connectors::of(&layer, &patches);
         let statistics = street_statistics(&graph, role);
-        Style { layer, patches, connectors, statistics }
+        let mut index = SegmentIndex::new(60.0);
+        for (id, edge) in graph.edges() {
+            if role != Role::Main || is_main[id.index()] {
+                index.insert_line(id.0, &edge.line_m());
+            }
+        }
+        let empty_m = fill::empty_distance_m(&city.target, &index);
+        Style { layer, patches, connectors, statistics, empty_m }
     };
     let (main, local) = (style(Role::Main), style(Role::Local));
     if main.patches.is_empty() && local.patches.is_empty() {
@@ -278,17 +287,17 @@ fn kept_polygons(city: &City, params: &Params) -> Result<Vec<Polygon>, Error> {
 }
 
 impl Style {
-    /// The layer's node nearest to `p` that can begin growth: a junction in a patch, else any node
-    /// that is no dead end.
-    pub fn nearest_start(&self, p: Vec2) -> Option<usize> {
+    /// The layer's nodes that can begin growth, nearest to `p` first: junctions in patches, of three
+    /// streets and more before others.
+    pub fn starts_near(&self, p: Vec2) -> Vec<usize> {
         let nodes = &self.layer.nodes;
-        let near = |filter: &dyn Fn(usize) -> bool| {
-            (0..nodes.len())
-                .filter(|n| filter(*n))
-                .min_by(|a, b| nodes[*a].at.distance(p).total_cmp(&nodes[*b].at.distance(p)))
-        };
-        near(&|n| nodes[n].patch.is_some() && nodes[n].ends.len() > 2)
-            .or_else(|| near(&|n| nodes[n].patch.is_some()))
-            .or_else(|| near(&|n| nodes[n].kind != NodeKind::DeadEnd))
+        let mut starts: Vec<usize> =
+            (0..nodes.len()).filter(|n| nodes[*n].patch.is_some()).collect();
+        starts.sort_by(|a, b| {
+            let few = |n: usize| nodes[n].ends.len() < 3;
+            let distance = nodes[*a].at.distance(p).total_cmp(&nodes[*b].at.distance(p));
+            few(*a).cmp(&few(*b)).then(distance).then(a.cmp(b))
+        });
+        starts
     }
 }

@@ -7,7 +7,8 @@
 //! ([`layer`]); 2 both are cut into patches ([`detect`], [`patch`]) and measured; 3 main streets grow
 //! from the starts over the whole target ([`growth`]: [`placing`] copies, [`drawing`] chooses,
 //! [`procedural`] makes and connects); 4 local streets grow in every cell between them ([`cells`]);
-//! 5 dangling ends go and the target cuts ([`finish`]).
+//! both passes fill what was left empty ([`fill`]); 5 dangling ends go and the target cuts
+//! ([`finish`]).
 //!
 //! Departures: a patch whose connectors would cross a street is not refused, they end there in a
 //! junction; local streets never leave their cell, so that cells grow on all cores and the result
@@ -22,6 +23,7 @@ mod cells;
 mod detect;
 mod drawing;
 mod error;
+mod fill;
 mod finish;
 mod growth;
 mod layer;

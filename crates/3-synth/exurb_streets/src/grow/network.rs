@@ -84,7 +84,7 @@ pub enum Landing {
 /// What a line wants.
 #[derive(Clone, Copy, Debug)]
 pub struct Wish {
-    /// Its batch: edges of the same batch do not stand in its way but by crossing.
+    /// Its batch: edges of the same batch do not stand in its way but by crossing. 0 is none.
     pub batch: u32,
     /// It must arrive at this node, whole.
     pub to: Option<NodeId>,
@@ -185,7 +185,7 @@ impl Network {
         if wanted < 0.5 || line.len() < 2 {
             return None;
         }
-        if self.crowded(from) || !self.angle_fits(from, line, wish.least_angle_rad) {
+        if self.crowded(from) || !self.angle_fits(from, line, wish) {
             return None;
         }
         let (line, landing) = match wish.to {
@@ -207,7 +207,7 @@ impl Network {
                 return None;
             }
             let back: Vec<Vec2> = line.iter().rev().copied().collect();
-            if self.crowded(to) || !self.angle_fits(to, &back, wish.least_angle_rad) {
+            if self.crowded(to) || !self.angle_fits(to, &back, wish) {
                 return None;
             }
         }
@@ -266,12 +266,17 @@ impl Network {
         self.segments.remove_line(id.0, &line);
         let Some(edge) = self.graph.remove_edge(id) else { return };
         for node in [edge.from, edge.to] {
-            if let Some(n) = self.graph.get_node(node)
-                && self.graph.degree(node) == 0
-            {
-                self.points.remove(node.0, n.at.to_m());
-                self.graph.remove_isolated_node(node);
-            }
+            self.remove_lonely(node);
+        }
+    }
+
+    /// Removes a node if it has no edge.
+    pub fn remove_lonely(&mut self, node: NodeId) {
+        if let Some(n) = self.graph.get_node(node)
+            && self.graph.degree(node) == 0
+        {
+            self.points.remove(node.0, n.at.to_m());
+            self.graph.remove_isolated_node(node);
         }
     }
 
@@ -280,19 +285,23 @@ impl Network {
         self.graph.degree(node) >= MOST_STREETS
     }
 
-    /// The smallest angle between the start of `line` and the streets at `node`, in radians.
-    pub fn angle_at(&self, node: NodeId, line: &[Vec2]) -> f64 {
+    /// The smallest angle between the start of `line` and the streets at `node`, in radians. Streets of
+    /// `batch` were laid with it: the example answers for their angle.
+    pub fn angle_at(&self, node: NodeId, line: &[Vec2], batch: u32) -> f64 {
         let d = (polyline::point_at(line, 15.0) - line[0]).normalize_or_zero();
         self.graph
             .darts(node)
             .iter()
-            .filter(|dart| !self.graph.edge(dart.edge()).data.rim)
+            .filter(|dart| {
+                let piece = &self.graph.edge(dart.edge()).data;
+                !piece.rim && (batch == 0 || piece.batch != batch)
+            })
             .map(|dart| trig::angle_between(self.graph.direction(*dart, 15.0), d))
             .fold(f64::INFINITY, f64::min)
     }
 
-    fn angle_fits(&self, node: NodeId, line: &[Vec2], least_rad: f64) -> bool {
-        self.angle_at(node, line) >= least_rad
+    fn angle_fits(&self, node: NodeId, line: &[Vec2], wish: Wish) -> bool {
+        self.angle_at(node, line, wish.batch) >= wish.least_angle_rad
     }
 
     fn edge_angle_fits(&self, edge: EdgeId, at: GridPoint, line: &[Vec2], least_rad: f64) -> bool {
@@ -440,7 +449,7 @@ impl Network {
                         return false;
                     }
                 }
-                if edge.data.batch == batch {
+                if batch != 0 && edge.data.batch == batch {
                     return true;
                 }
                 // The part of this segment that lies outside the corners must keep its distance.
@@ -465,7 +474,7 @@ impl Network {
         if landing == Landing::Free {
             let own = |id: EdgeId| {
                 let e = self.graph.edge(id);
-                e.from == from || e.to == from || e.data.batch == batch
+                e.from == from || e.to == from || batch != 0 && e.data.batch == batch
             };
             let mut clear = true;
             self.segments.visit(Bounds { min: end - JOIN_M, max: end + JOIN_M }, |e| {

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use exurb_geom::{GridPoint, Vec2};
 use exurb_graph::NodeId;
 
-use super::growth::{Growth, Laid};
+use super::growth::Growth;
 use super::layer::ChainEnd;
-use super::network::{JOIN_M, Landing, Probe, Wish};
+use super::network::{JOIN_M, Wish};
 
 /// Copies that come to lie this near to an existing node are that node.
 const SAME_M: f64 = 1.0;
@@ -96,7 +96,7 @@ pub fn place(growth: &mut Growth, node: NodeId, patch: usize, root: usize) -> bo
     for &end in &patch.outer {
         let Some(Some(from)) = nodes.get(&layer.tail(end)).copied() else { continue };
         let line: Vec<Vec2> = layer.line(end).into_iter().map(|p| p + shift).collect();
-        if growth.net.angle_at(from, &line) < REDUNDANT_RAD {
+        if growth.net.angle_at(from, &line, batch) < REDUNDANT_RAD {
             continue;
         }
         let far = layer.head(end);
@@ -154,40 +154,35 @@ fn lay_inner(
         let head = layer.head(end);
         let to = nodes.get(&head).copied().flatten();
         let back: Vec<Vec2> = line.iter().rev().copied().collect();
-        let repeats = growth.net.angle_at(from, &line) < REDUNDANT_RAD
-            && to.is_some_and(|n| growth.net.angle_at(n, &back) < REDUNDANT_RAD);
+        let repeats = growth.net.angle_at(from, &line, batch) < REDUNDANT_RAD
+            && to.is_some_and(|n| growth.net.angle_at(n, &back, batch) < REDUNDANT_RAD);
         if repeats {
             continue;
         }
         let piece = growth.copied(&layer.chains[chain].street, start, &patch.label, batch);
-        let vertex = growth.copy_of(head, start);
-        let wish = Wish { to, least_angle_rad: 0.2, ..Wish::free(batch) };
-        let probe = match to {
-            Some(_) => growth.net.probe(from, &line, wish),
-            // It must arrive where it wants to.
-            None => growth
-                .net
-                .probe(from, &line, wish)
-                .filter(|p: &Probe| p.landing == Landing::Free && p.kept > 0.999),
-        };
+        // Inner chains arrive exactly: their far node is made first.
+        let arrives = to.unwrap_or_else(|| {
+            let vertex = growth.copy_of(head, start);
+            growth.net.add_node(GridPoint::round(line[line.len() - 1]), vertex)
+        });
+        let wish = Wish { to: Some(arrives), least_angle_rad: 0.2, ..Wish::free(batch) };
         let edges = growth.net.graph.edge_bound();
         let via = layer.via(end);
-        match probe.and_then(|_| growth.lay(from, &line, wish, piece, vertex, &via)) {
-            Some(Laid { to: tip, .. }) => {
-                laid = true;
-                nodes.insert(head, Some(tip));
-                undo.extend(
-                    (edges..growth.net.graph.edge_bound()).map(|e| exurb_graph::EdgeId(e as u32)),
-                );
+        if growth.lay(from, &line, wish, piece, Default::default(), &via).is_some() {
+            laid = true;
+            nodes.insert(head, Some(arrives));
+            let new = edges..growth.net.graph.edge_bound();
+            undo.extend(new.map(|e| exurb_graph::EdgeId(e as u32)));
+        } else {
+            if to.is_none() {
+                growth.net.remove_lonely(arrives);
             }
-            None => {
-                for edge in undo.into_iter().rev() {
-                    if growth.net.graph.get_edge(edge).is_some() {
-                        growth.net.remove_edge(edge);
-                    }
+            for edge in undo.into_iter().rev() {
+                if growth.net.graph.get_edge(edge).is_some() {
+                    growth.net.remove_edge(edge);
                 }
-                return None;
             }
+            return None;
         }
     }
     Some(laid)

@@ -9,12 +9,12 @@ use exurb_operation::Run;
 
 use super::cells::{self, Grown};
 use super::error::Error;
-use super::finish;
 use super::growth::{Growth, Place};
 use super::learn::Vocabulary;
 use super::network::{Network, Piece, Vertex};
 use super::params::Params;
 use super::placing;
+use super::{fill, finish};
 
 /// Growth goes on this far beyond the target, so that its edge looks like its middle.
 const MARGIN_M: f64 = 90.0;
@@ -56,9 +56,7 @@ pub fn synthesize(input: &Input, params: &Params, run: &Run) -> Result<StreetGra
     cells::make_berths(&mut main);
 
     run.phase("local streets");
-    let starts: Vec<(GridPoint, Vec2)> =
-        input.starts.iter().map(|s| (GridPoint::round(s.at), s.source)).collect();
-    let local = cells::grow(&main, area, &examples, &starts, params, run)?;
+    let local = cells::grow(&main, area, &examples, &input.starts, params, run)?;
 
     run.phase("finish");
     let graph = join(main, local);
@@ -81,33 +79,37 @@ fn grow_main(
     let street_m = examples.first().map_or(100.0, |e| e.main.statistics.length_mean_m);
     let mut growth =
         Growth::new(Network::new(street_m), examples, true, area, params, run.stream(0));
-    let mut first: Vec<(NodeId, usize)> = Vec::new();
     for (i, start) in input.starts.iter().enumerate() {
-        let style = &examples[i].main;
-        let Some(own) =
-            style.nearest_start(start.source).filter(|n| style.layer.nodes[*n].patch.is_some())
-        else {
-            continue;
-        };
-        // The start's place in the target belongs to its place in the example, not to the junction
-        // nearest to that.
-        let shift = start.at - start.source;
+        begin(&mut growth, i, start);
+    }
+    growth.run(run)?;
+    if growth.net.graph.edge_count() > 0 {
+        fill::fill(&mut growth, examples[0].main.empty_m, run)?;
+    }
+    Ok(growth.net)
+}
+
+/// Begins growth at a start: the first of the nearest junctions of the example whose patch can lie
+/// there. The start's place in the target belongs to its place in the example, not to the junction
+/// nearest to that.
+pub fn begin(growth: &mut Growth, number: usize, start: &Start) {
+    const TRIES: usize = 24;
+    let style = growth.style(number);
+    let shift = start.at - start.source;
+    for own in style.starts_near(start.source).into_iter().take(TRIES) {
         let mut at = style.layer.nodes[own].at + shift;
-        if !area.contains(GridPoint::round(at)) {
+        if !growth.area.contains(GridPoint::round(at)) {
             at = start.at;
         }
         let link = Some(style.layer.nodes[own].example);
-        let node = growth
-            .net
-            .add_node(GridPoint::round(at), Vertex { link, start: i, ..Vertex::default() });
-        first.push((node, own));
+        let vertex = Vertex { link, start: number, ..Vertex::default() };
+        let node = growth.net.add_node(GridPoint::round(at), vertex);
+        if placing::continuation(growth, node, own) {
+            growth.queue.push_back(Place::Node(node));
+            return;
+        }
+        growth.net.remove_lonely(node);
     }
-    for (node, own) in first {
-        placing::continuation(&mut growth, node, own);
-        growth.queue.push_back(Place::Node(node));
-    }
-    growth.run(run)?;
-    Ok(growth.net)
 }
 
 /// Removes main streets that end where nothing goes on, in the example or here. A main street that

@@ -1,0 +1,115 @@
+//! Filling what growth left empty.
+//!
+//! The paper stops when its queue is empty, which can leave large parts of a target without a
+//! street. We learn how far places of the example lie from a street, look for places farther from
+//! one than nearly all of these, and let a street set out towards them. Where the example itself has
+//! wide open land (sea, hills), what counts as empty is as wide.
+
+use exurb_geom::{GridPoint, Polygon, SegmentIndex, Vec2, polyline};
+use exurb_operation::Run;
+
+use super::error::Error;
+use super::growth::Growth;
+use super::procedural;
+
+/// Share of the example's places that lie nearer to a street than what counts as empty.
+const NEAR_SHARE: f64 = 0.93;
+/// Places are looked at about this far apart in the example, in metres.
+const SAMPLE_M: f64 = 100.0;
+/// Distances are learned up to this, in metres.
+const FARTHEST_M: f64 = 1600.0;
+/// Rounds at most: a round fills what the one before has brought within reach.
+const ROUNDS: usize = 4;
+
+/// How far from the streets of `index` a place of `area` must lie to count as empty, in metres.
+pub fn empty_distance_m(area: &Polygon, index: &SegmentIndex) -> f64 {
+    let mut distances: Vec<f64> =
+        places(area, SAMPLE_M).into_iter().map(|p| street_distance(index, p)).collect();
+    distances.sort_by(f64::total_cmp);
+    let rank = (distances.len() as f64 * NEAR_SHARE) as usize;
+    distances.get(rank).copied().unwrap_or(FARTHEST_M).max(60.0)
+}
+
+/// Lets streets set out towards empty places of the growth's area until there are none in reach.
+pub fn fill(growth: &mut Growth, empty_m: f64, run: &Run) -> Result<(), Error> {
+    if empty_m >= FARTHEST_M {
+        return Ok(());
+    }
+    let area = growth.area;
+    for _ in 0..ROUNDS {
+        let mut grew = false;
+        for place in places(area, empty_m) {
+            if growth.net.edge_near(place, empty_m).is_some()
+                || area.boundary_distance_m(place) < empty_m * 0.3
+            {
+                continue;
+            }
+            let Some((edge, at)) = growth.net.edge_near(place, 3.0 * empty_m) else { continue };
+            let before = growth.net.graph.edge_bound();
+            set_out(growth, edge, at, place);
+            growth.run(run)?;
+            grew |= growth.net.graph.edge_bound() > before + 1;
+        }
+        if !grew {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// Lays a street from `edge` at `at` towards `place` and queues its end.
+fn set_out(growth: &mut Growth, edge: exurb_graph::EdgeId, at: Vec2, place: Vec2) {
+    let e = growth.net.graph.edge(edge);
+    let start = growth.net.graph.node(e.from).data.start;
+    let nearest_end = [e.from, e.to]
+        .into_iter()
+        .min_by(|a, b| {
+            let d = |n| growth.net.graph.node(n).at.to_m().distance(at);
+            d(*a).total_cmp(&d(*b))
+        })
+        .unwrap_or(e.from);
+    let near = growth.net.graph.node(nearest_end).at.to_m().distance(at);
+    let node = if e.data.fixed || near < super::network::JOIN_M {
+        nearest_end
+    } else {
+        match growth.net.split(edge, GridPoint::round(at)) {
+            Some(node) => {
+                growth.net.graph.node_mut(node).data.start = start;
+                node
+            }
+            None => nearest_end,
+        }
+    };
+    let direction = place - growth.net.graph.node(node).at.to_m();
+    if let Some(direction) = direction.try_normalize() {
+        procedural::step(growth, node, direction);
+    }
+}
+
+fn street_distance(index: &SegmentIndex, p: Vec2) -> f64 {
+    let mut reach = 50.0;
+    while reach < FARTHEST_M {
+        let mut best = f64::INFINITY;
+        index.visit(exurb_geom::Bounds { min: p - reach, max: p + reach }, |e| {
+            best = best.min(polyline::nearest_on_segment(e.a, e.b, p).0.distance(p));
+            true
+        });
+        if best <= reach {
+            return best;
+        }
+        reach *= 2.0;
+    }
+    FARTHEST_M
+}
+
+/// Places of `area` on a square grid of `step_m`, row by row.
+fn places(area: &Polygon, step_m: f64) -> Vec<Vec2> {
+    let bounds = area.bounds();
+    let size = bounds.size() / step_m;
+    let (columns, rows) = (size.x.ceil() as i32, size.y.ceil() as i32);
+    (0..rows)
+        .flat_map(|y| (0..columns).map(move |x| (f64::from(x) + 0.5, f64::from(y) + 0.5)))
+        .map(|(x, y)| bounds.min + Vec2::new(x, y) * step_m)
+        .filter(|p| area.contains(GridPoint::round(*p)))
+        .collect()
+}
