@@ -3,7 +3,7 @@
 
 use crate::Vec2;
 
-pub use libm::{acos, asin, atan, atan2, cos, exp, hypot, log as ln, log10, pow, sin, tan};
+pub use libm::{acos, asin, atan, atan2, cos, erfc, exp, hypot, log as ln, log10, pow, sin, tan};
 
 /// The direction `angle_rad` from east, counter-clockwise, as a unit vector.
 pub fn unit(angle_rad: f64) -> Vec2 {

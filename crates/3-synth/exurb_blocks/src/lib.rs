@@ -9,10 +9,13 @@
 //! of them. [`operations()`] lists the rooms for the command line, recipes and the studio.
 
 pub mod footprints;
+mod kerb;
 pub mod library;
 mod operations;
 pub mod parcels;
 mod ring;
 mod scoped;
+#[cfg(test)]
+mod test_city;
 
 pub use operations::operations;

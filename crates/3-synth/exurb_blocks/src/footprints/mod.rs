@@ -20,7 +20,7 @@ mod row;
 mod tests;
 
 use exurb_city::{Block, Building, City, Edit, Parcel, area, block};
-use exurb_geom::{GridPoint, Polygon, SegmentGrid, SegmentIndex, grid};
+use exurb_geom::{GridPoint, Polygon, SegmentIndex, grid};
 use exurb_operation::{Card, Example, Failure, Operation, Rng, Run, Scope, rng};
 use rand::RngExt;
 use rayon::prelude::*;
@@ -28,8 +28,8 @@ use rayon::prelude::*;
 pub use error::Error;
 pub use params::Params;
 
+use crate::kerb::Kerb;
 use crate::library::{BuildingSample, Donors, ExampleBlock, Library, OpenLand};
-use crate::ring::Ring;
 use crate::scoped::Scoped;
 use lot::Lot;
 use place::{Wish, place};
@@ -265,16 +265,13 @@ impl<'p> Style<'p> {
 
 /// Lots with a front, in order along the kerb; those of open land are left out.
 fn in_order<'p>(block: &Block, parcels: &[&'p Parcel]) -> Vec<(&'p Parcel, Lot)> {
-    let kerb = SegmentGrid::new(block.polygon.segments().collect());
-    let rings: Vec<Ring> = block.polygon.rings().map(Ring::of).collect();
+    let kerb = Kerb::of(&block.polygon);
     let mut lots: Vec<(usize, f64, &Parcel, Lot)> = parcels
         .iter()
         .filter(|p| p.land_use.as_deref().is_none_or(|class| !area::is_open(class)))
         .filter_map(|parcel| {
-            let lot = Lot::of(&parcel.polygon, &kerb, block.pavement_m)?;
-            let start = lot.ends.0;
-            let places = rings.iter().enumerate().map(|(r, ring)| (r, ring.nearest(start)));
-            let (ring, place) = places.min_by(|a, b| a.1.distance_m.total_cmp(&b.1.distance_m))?;
+            let lot = Lot::of(&parcel.polygon, kerb.grid(), block.pavement_m)?;
+            let (ring, place) = kerb.nearest(lot.ends.0);
             Some((ring, place.at_m, *parcel, lot))
         })
         .collect();

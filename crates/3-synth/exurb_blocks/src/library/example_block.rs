@@ -3,9 +3,9 @@ use std::sync::Arc;
 use exurb_city::{Block, BlockClass, City};
 use exurb_geom::{Polygon, Vec2, overlay, polyline};
 
-use super::fronts::{BlockContents, Front, gap_m};
+use super::fronts::{BlockContents, Front, are_near};
 use super::{BuildingSample, Features, OpenLand};
-use crate::ring::Ring;
+use crate::kerb::Kerb;
 
 /// A block of an example and all it teaches.
 #[derive(Clone, Debug)]
@@ -46,6 +46,8 @@ const SPARSE_COVERAGE: f64 = 0.12;
 const ANNEX_SHARE: f64 = 0.4;
 /// Walls nearer than this are one, in metres.
 const SHARED_WALL_M: f64 = 0.4;
+/// Annexes nearer than this are built onto their house, in metres.
+const TOUCHING_M: f64 = 0.05;
 /// A building is compared with so many on either side.
 const NEIGHBOURS: usize = 2;
 /// Depth of lots, in metres, at least and at most.
@@ -74,9 +76,9 @@ pub fn measure(
         .share(&block.polygon)
         .filter(|(_, share)| *share >= OPEN_SHARE && coverage <= OPEN_COVERAGE)
         .map(|(class, _)| class);
-    let rings: Vec<Ring> = block.polygon.rings().map(Ring::of).collect();
-    let fronts = row_of_fronts(city, contents, &rings);
-    let mut buildings = samples(&fronts, &rings);
+    let kerb = Kerb::of(&block.polygon);
+    let fronts = row_of_fronts(city, contents, &kerb);
+    let mut buildings = samples(&fronts, &kerb);
     let mut out = ExampleBlock {
         source: city.metadata.name.clone(),
         id: block.id,
@@ -90,7 +92,7 @@ pub fn measure(
         coverage,
         buildings: Vec::new(),
     };
-    let lots = lots(city, contents, &rings);
+    let lots = lots(city, contents, &kerb);
     if lots.len() >= 2 {
         out.frontages_m = lots.iter().map(|lot| lot.0).collect();
         out.depth_m = median(lots.iter().map(|lot| lot.1)).clamp(DEPTHS_M.0, DEPTHS_M.1);
@@ -98,7 +100,7 @@ pub fn measure(
         let built = contents.buildings.len().min(lots.len()) as f64;
         out.empty_share = Some(1.0 - built / lots.len() as f64);
     } else if !buildings.is_empty() {
-        measure_frontage(&mut out, &buildings, &rings, area);
+        measure_frontage(&mut out, &buildings, &kerb, area);
         out.empty_share = Some(0.0);
     } else {
         out.empty_share = Some(1.0);
@@ -116,13 +118,13 @@ pub fn measure(
 fn measure_frontage(
     out: &mut ExampleBlock,
     buildings: &[BuildingSample],
-    rings: &[Ring],
+    kerb: &Kerb,
     area_m2: f64,
 ) {
     let fronted: f64 = out.frontages_m.iter().sum();
-    let kerb: f64 = rings.iter().map(Ring::length_m).sum();
     let depth = area_m2 / fronted.max(1.0);
-    let flanks: f64 = rings
+    let flanks: f64 = kerb
+        .rings
         .iter()
         .flat_map(|ring| {
             let sides = ring.sides();
@@ -134,7 +136,7 @@ fn measure_frontage(
                 .map(|(side, _)| side.length_m())
         })
         .sum();
-    out.fronted_share = (fronted / (kerb - flanks).max(1.0)).min(1.0);
+    out.fronted_share = (fronted / (kerb.length_m() - flanks).max(1.0)).min(1.0);
     if out.coverage > SPARSE_COVERAGE {
         out.fronted_share = 1.0;
     }
@@ -146,7 +148,7 @@ fn measure_frontage(
 }
 
 /// Frontage and depth of the parcels that lie at the kerb, in order along it.
-fn lots(city: &City, contents: &BlockContents, rings: &[Ring]) -> Vec<(f64, f64)> {
+fn lots(city: &City, contents: &BlockContents, kerb: &Kerb) -> Vec<(f64, f64)> {
     // Cadastres draw parcels to the kerb, to the pavement or to a line between.
     const AT_KERB_M: f64 = 8.0;
     let mut found: Vec<(usize, f64, f64, f64)> = contents
@@ -154,7 +156,7 @@ fn lots(city: &City, contents: &BlockContents, rings: &[Ring]) -> Vec<(f64, f64)
         .iter()
         .filter_map(|i| {
             let polygon = &city.parcels[*i as usize].polygon;
-            let front = Front::of(polygon, rings).filter(|f| f.setback_m < AT_KERB_M)?;
+            let front = Some(Front::of(polygon, kerb)).filter(|f| f.setback_m < AT_KERB_M)?;
             let width = front.size_m.x.max(1.0);
             Some((front.ring, front.at_m, width, polygon.area_m2() / width))
         })
@@ -172,14 +174,11 @@ struct Fronting {
 
 /// Buildings that front on the kerb, in order along it. Annexes and buildings behind that share a
 /// wall with one of them are joined to it, others are left out.
-fn row_of_fronts(city: &City, contents: &BlockContents, rings: &[Ring]) -> Vec<Fronting> {
+fn row_of_fronts(city: &City, contents: &BlockContents, kerb: &Kerb) -> Vec<Fronting> {
     let polygon = |i: u32| &city.buildings[i as usize].polygon;
     let usual = median(contents.buildings.iter().map(|i| polygon(*i).area_m2()));
-    let mut fronts: Vec<(u32, Front)> = contents
-        .buildings
-        .iter()
-        .filter_map(|i| Some((*i, Front::of(polygon(*i), rings)?)))
-        .collect();
+    let mut fronts: Vec<(u32, Front)> =
+        contents.buildings.iter().map(|i| (*i, Front::of(polygon(*i), kerb))).collect();
     fronts.sort_by(|a, b| a.1.setback_m.total_cmp(&b.1.setback_m).then(a.0.cmp(&b.0)));
     let mut kept: Vec<(u32, Front)> = Vec::new();
     let mut others: Vec<u32> = Vec::new();
@@ -193,29 +192,23 @@ fn row_of_fronts(city: &City, contents: &BlockContents, rings: &[Ring]) -> Vec<F
     }
     let mut onto: Vec<Vec<u32>> = vec![Vec::new(); kept.len()];
     for i in others {
-        let gap = |k: usize| gap_m(polygon(i), polygon(kept[k].0));
-        let nearest = (0..kept.len())
-            .filter(|k| polygon(i).area_m2() <= polygon(kept[*k].0).area_m2())
-            .map(|k| (k, gap(k)))
-            .min_by(|a, b| a.1.total_cmp(&b.1));
-        if let Some((k, _)) = nearest.filter(|(_, gap)| *gap < 0.05) {
+        let carries = |k: &usize| {
+            let main = polygon(kept[*k].0);
+            polygon(i).area_m2() <= main.area_m2() && are_near(polygon(i), main, TOUCHING_M)
+        };
+        if let Some(k) = (0..kept.len()).find(carries) {
             onto[k].push(i);
         }
     }
-    let mut out: Vec<Fronting> = kept
-        .into_iter()
-        .zip(onto)
-        .filter_map(|((i, front), onto)| {
-            let parts = onto.iter().map(|j| polygon(*j)).chain([polygon(i)]);
-            match overlay::union(parts).into_iter().next() {
-                Some(whole) if !onto.is_empty() => {
-                    let front = Front::of(&whole, rings)?;
-                    Some(Fronting { polygon: whole, front })
-                }
-                _ => Some(Fronting { polygon: polygon(i).clone(), front }),
-            }
-        })
-        .collect();
+    let joined = |(i, front): (u32, Front), onto: Vec<u32>| {
+        let parts = onto.iter().map(|j| polygon(*j)).chain([polygon(i)]);
+        let whole = (!onto.is_empty()).then(|| overlay::union(parts).into_iter().next()).flatten();
+        match whole {
+            Some(polygon) => Fronting { front: Front::of(&polygon, kerb), polygon },
+            None => Fronting { polygon: polygon(i).clone(), front },
+        }
+    };
+    let mut out: Vec<Fronting> = kept.into_iter().zip(onto).map(|(k, o)| joined(k, o)).collect();
     let key = |f: &Fronting| (f.front.ring, f.front.at_m);
     out.sort_by(|a, b| {
         let ((r, s), (q, t)) = (key(a), key(b));
@@ -224,9 +217,10 @@ fn row_of_fronts(city: &City, contents: &BlockContents, rings: &[Ring]) -> Vec<F
     out
 }
 
-fn samples(fronts: &[Fronting], rings: &[Ring]) -> Vec<BuildingSample> {
+fn samples(fronts: &[Fronting], kerb: &Kerb) -> Vec<BuildingSample> {
     let polygon = |k: usize| &fronts[k].polygon;
-    let corners: Vec<Vec<Vec2>> = rings
+    let corners: Vec<Vec<Vec2>> = kerb
+        .rings
         .iter()
         .map(|ring| {
             let convex = ring.sides().into_iter().filter(|s| s.turn_before_rad > 0.0);
@@ -237,7 +231,7 @@ fn samples(fronts: &[Fronting], rings: &[Ring]) -> Vec<BuildingSample> {
         .map(|k| {
             let front = &fronts[k].front;
             let cap = front.size_m.x.max(8.0) * 2.0;
-            let length = rings[front.ring].length_m();
+            let length = kerb.rings[front.ring].length_m();
             let ahead = |from: f64, to: f64| {
                 let d = (to - from).rem_euclid(length);
                 if d > length / 2.0 { d - length } else { d }
@@ -257,7 +251,7 @@ fn samples(fronts: &[Fronting], rings: &[Ring]) -> Vec<BuildingSample> {
                     } else {
                         ahead(there.span().1, front.span().0)
                     };
-                    let shares = gap_m(polygon(k), polygon(other)) < SHARED_WALL_M;
+                    let shares = are_near(polygon(k), polygon(other), SHARED_WALL_M);
                     let gap = if shares { 0.0 } else { along.clamp(0.5, cap) };
                     let side = if is_after { &mut gap_after_m } else { &mut gap_before_m };
                     if shares || step == 1 {

@@ -1,12 +1,17 @@
 //! Buildings and lots of an example, block by block, seen from the kerb they lie on.
 
-use exurb_city::{Block, BlockClass, City};
+use std::collections::BTreeMap;
+
+use exurb_city::{Block, City};
 use exurb_geom::{BoxGrid, GridPoint, Polygon, Vec2, polygon::signed_area_m2, polyline, trig};
 
-use crate::ring::Ring;
+use crate::kerb::Kerb;
 
 /// Footprints under this area are sheds, not buildings, in m².
 const LEAST_BUILDING_M2: f64 = 15.0;
+
+/// Buildings farther from the kerb face no street, in metres.
+const FACING_M: f64 = 60.0;
 
 /// What lies in each block of a city, as indices into the city's lists.
 pub struct Contents {
@@ -20,28 +25,33 @@ pub struct BlockContents {
 }
 
 impl Contents {
-    /// Puts every building and parcel into the block that holds a point well inside it.
+    /// Puts every building and parcel into its block: by its block's number where the city tells
+    /// it, else by a point well inside it.
     pub fn of(city: &City, blocks: &[Block]) -> Self {
         let boxes = BoxGrid::of(blocks.iter().map(|b| &b.polygon));
         let mut near = Vec::new();
-        let mut holder = |polygon: &Polygon| {
+        let number: BTreeMap<u32, usize> =
+            blocks.iter().enumerate().map(|(i, b)| (b.id, i)).collect();
+        let told = !city.blocks.is_empty();
+        let mut holder = |polygon: &Polygon, block: u32| {
+            if told && block != 0 {
+                return number.get(&block).copied();
+            }
             let p = GridPoint::round(polygon.interior_point());
             boxes.meeting(p, p, &mut near);
-            near.iter()
-                .map(|n| *n as usize)
-                .find(|n| blocks[*n].class == BlockClass::Block && blocks[*n].polygon.contains(p))
+            near.iter().map(|n| *n as usize).find(|n| blocks[*n].polygon.contains(p))
         };
         let mut of_block = vec![BlockContents::default(); blocks.len()];
         for (i, building) in city.buildings.iter().enumerate() {
             if building.is_part || building.polygon.area_m2() < LEAST_BUILDING_M2 {
                 continue;
             }
-            if let Some(home) = holder(&building.polygon) {
+            if let Some(home) = holder(&building.polygon, building.block) {
                 of_block[home].buildings.push(i as u32);
             }
         }
         for (i, parcel) in city.parcels.iter().enumerate() {
-            if let Some(home) = holder(&parcel.polygon) {
+            if let Some(home) = holder(&parcel.polygon, parcel.block) {
                 of_block[home].parcels.push(i as u32);
             }
         }
@@ -67,24 +77,26 @@ pub struct Front {
 }
 
 impl Front {
-    /// `polygon` as seen from the nearest of `rings`; `None` for a block without kerb.
-    pub fn of(polygon: &Polygon, rings: &[Ring]) -> Option<Self> {
+    /// `polygon` as seen from the nearest kerb.
+    pub fn of(polygon: &Polygon, kerb: &Kerb) -> Self {
         let corners = polyline::to_m(polygon.exterior());
         let edges = || (0..corners.len()).map(|i| (corners[i], corners[(i + 1) % corners.len()]));
-        let nearest = |p: Vec2| {
-            let places = rings.iter().enumerate().map(|(r, ring)| (r, ring.nearest(p)));
-            places.min_by(|a, b| a.1.distance_m.total_cmp(&b.1.distance_m))
-        };
         // The front is the edge whose middle is nearest: a corner alone tells no direction.
-        let (ring, place) = edges()
-            .filter(|(a, b)| a.distance(*b) > 1.5)
-            .filter_map(|(a, b)| nearest((a + b) / 2.0))
-            .chain(nearest(polygon.centroid()))
-            .min_by(|a, b| a.1.distance_m.total_cmp(&b.1.distance_m))?;
-        let setback_m = corners
-            .iter()
-            .filter_map(|p| nearest(*p))
-            .fold(place.distance_m, |least, (_, at)| least.min(at.distance_m));
+        let mut best = kerb.nearest(polygon.centroid());
+        let reach = polygon.bounds().size().length() / 2.0;
+        let mut setback_m = (best.1.distance_m - reach).max(0.0);
+        // Far from any street it faces none.
+        if setback_m < FACING_M {
+            for (a, b) in edges().filter(|(a, b)| a.distance(*b) > 1.5) {
+                let found = kerb.nearest((a + b) / 2.0);
+                if found.1.distance_m < best.1.distance_m {
+                    best = found;
+                }
+            }
+            let distances = corners.iter().map(|p| kerb.nearest(*p).1.distance_m);
+            setback_m = distances.fold(best.1.distance_m, f64::min);
+        }
+        let (ring, place) = best;
         let turn_rad = folded_turn(place.direction, main_direction(edges()));
         let along = trig::rotate(place.direction, turn_rad);
         let local = |p: Vec2| Vec2::new(p.dot(along), p.dot(along.perp()));
@@ -101,8 +113,9 @@ impl Front {
             .collect();
         let middle = (low + high) / 2.0;
         let middle = along * middle.x + along.perp() * middle.y;
-        let at_m = rings[ring].nearest(middle).at_m;
-        Some(Self { ring, at_m, setback_m, turn_rad, size_m: high - low, outline })
+        let (on, there) = kerb.nearest(middle);
+        let at_m = if on == ring { there.at_m } else { place.at_m };
+        Self { ring, at_m, setback_m, turn_rad, size_m: high - low, outline }
     }
 
     /// Does `other` stand between it and the kerb?
@@ -140,8 +153,13 @@ fn folded_turn(street: Vec2, angle_rad: f64) -> f64 {
     turn - (turn / quarter).round() * quarter
 }
 
+/// Are the outlines nearer than `within_m`?
+pub fn are_near(a: &Polygon, b: &Polygon, within_m: f64) -> bool {
+    a.bounds().grown(within_m).intersects(b.bounds()) && gap_m(a, b) < within_m
+}
+
 /// Least distance between two outlines in metres; 0 when they touch or overlap.
-pub fn gap_m(a: &Polygon, b: &Polygon) -> f64 {
+fn gap_m(a: &Polygon, b: &Polygon) -> f64 {
     let between = |p: &Polygon, q: &Polygon| {
         let corners = p
             .exterior()

@@ -6,7 +6,7 @@
 //! sites are doubled beside every cut, so that backs still meet on the axis); frontages are drawn
 //! from the example instead of from a normal distribution around its mean.
 
-use exurb_geom::{OrientedBox, Polygon, Vec2, voronoi::Site};
+use exurb_geom::{OrientedBox, Polygon, voronoi::Site};
 
 /// Two rows when the short side is at least this many lot depths (the paper gives no rule).
 const TWO_ROWS_DEPTHS: f64 = 1.5;
@@ -92,11 +92,4 @@ fn cuts(length_m: f64, count: usize, next_m: &mut impl FnMut() -> f64) -> Vec<f6
 /// How many parcels of `area_m2` a ground of `ground_m2` holds, at least one.
 pub fn count(ground_m2: f64, area_m2: f64) -> usize {
     (ground_m2 / area_m2.max(1.0)).round().clamp(1.0, 10_000.0) as usize
-}
-
-/// The label of the site nearest to `p`.
-pub fn nearest_label(sites: &[Site], p: Vec2) -> u32 {
-    let square = |s: &Site| s.at.distance_squared(p);
-    let nearest = sites.iter().min_by(|a, b| square(a).total_cmp(&square(b)));
-    nearest.map_or(0, |s| s.label)
 }

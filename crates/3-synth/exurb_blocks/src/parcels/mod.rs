@@ -18,6 +18,7 @@
 mod axis_voronoi;
 mod error;
 mod learn;
+mod owners;
 mod params;
 mod stretches;
 mod synthesize;

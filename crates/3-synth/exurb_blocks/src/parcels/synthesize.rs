@@ -4,6 +4,7 @@ use exurb_geom::{Polygon, Vec2, offset, polyline, voronoi, voronoi::Site};
 use exurb_operation::Rng;
 use rand::RngExt;
 
+use super::owners::Owners;
 use super::stretches::{Stretch, stretches};
 use super::tiling::Tiling;
 use super::{Params, axis_voronoi};
@@ -95,11 +96,12 @@ pub fn synthesize(ground: &Polygon, input: &Input, params: &Params, rng: &mut Rn
         *line = polyline::simplify(line, TOLERANCE_M);
     }
     lines.extend(court.iter().flat_map(outlines));
+    let owners = Owners::of(&sites);
     let owner = |p: Vec2| {
         if court.iter().any(|c| c.contains(exurb_geom::GridPoint::round(p))) {
             return behind;
         }
-        let label = axis_voronoi::nearest_label(&sites, p);
+        let label = owners.at(p);
         if resting.binary_search(&label).is_ok() { REST } else { label }
     };
     let mut tiling = Tiling::of(ground, &lines, owner);

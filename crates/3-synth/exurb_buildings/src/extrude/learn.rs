@@ -37,6 +37,8 @@ pub struct Learned {
 
 /// Fewer known heights than this are exceptions that mappers noted, not a city's heights.
 const ENOUGH: usize = 5;
+/// No more samples are kept of each kind.
+const MOST_SAMPLES: usize = 3000;
 /// Correlation within a block where the example cannot tell.
 const BLOCK_SHARE: f64 = 0.6;
 
@@ -70,6 +72,9 @@ pub fn learn(examples: &[Example], params: &Params, run: &Run) -> Result<Learned
         }
         count += 1;
     }
+    for list in [&mut learned.heights, &mut learned.roofs, &mut learned.uses] {
+        *list = thinned(std::mem::take(list));
+    }
     learned.block_share = pairs.correlation().unwrap_or(BLOCK_SHARE);
     if learned.heights.len() < ENOUGH {
         learned.heights.clear();
@@ -80,6 +85,12 @@ pub fn learn(examples: &[Example], params: &Params, run: &Run) -> Result<Learned
         run.warn("the example tells no roof shapes; small and narrow houses get pitched roofs");
     }
     Ok(learned)
+}
+
+/// Every so many-th sample of a list that is too long to be searched for every building.
+fn thinned(samples: Vec<Sample>) -> Vec<Sample> {
+    let step = samples.len().div_ceil(MOST_SAMPLES).max(1);
+    samples.into_iter().step_by(step).collect()
 }
 
 /// Index of the block that holds each of the chosen buildings.

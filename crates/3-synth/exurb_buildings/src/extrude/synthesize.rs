@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use exurb_city::Roof;
+use exurb_geom::trig;
 use exurb_operation::Rng;
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
@@ -111,18 +112,5 @@ fn simplified(roof: Roof) -> Roof {
 
 /// Share of the standard normal distribution below `z`.
 fn normal_cdf(z: f64) -> f64 {
-    0.5 * erfc(-z / std::f64::consts::SQRT_2)
-}
-
-/// Complementary error function, to 1.5e-7 (Abramowitz and Stegun 1964,
-/// formula 7.1.26).
-fn erfc(x: f64) -> f64 {
-    let a = x.abs();
-    let t = 1.0 / (1.0 + 0.327_591_1 * a);
-    let sum = [0.254_829_592, -0.284_496_736, 1.421_413_741, -1.453_152_027, 1.061_405_429]
-        .iter()
-        .rev()
-        .fold(0.0, |acc, c| (acc + c) * t);
-    let tail = sum * exurb_geom::trig::exp(-a * a);
-    if x >= 0.0 { tail } else { 2.0 - tail }
+    0.5 * trig::erfc(-z / std::f64::consts::SQRT_2)
 }

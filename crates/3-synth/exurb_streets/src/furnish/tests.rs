@@ -5,7 +5,7 @@ use exurb_city::{
     street_graph,
 };
 use exurb_geom::{Frame, GridPoint, Polygon, Vec2};
-use exurb_operation::{AnyOperation, Example, Run, Scope, erase};
+use exurb_operation::{Example, Run, Scope, erase};
 use serde_json::{Value, json};
 
 use super::Furnish;

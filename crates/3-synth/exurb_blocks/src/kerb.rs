@@ -1,0 +1,101 @@
+//! The outline of a block as a list of rings, and the place on it nearest to a point.
+
+use exurb_geom::{GridPoint, Polygon, SegmentGrid, Vec2, polyline};
+
+use crate::ring::{Place, Ring};
+
+/// The rings of a block's outline, the outer one first.
+#[derive(Clone, Debug)]
+pub struct Kerb {
+    /// Its rings.
+    pub rings: Vec<Ring>,
+    grid: SegmentGrid,
+    /// Ring and start along it of every segment of the grid.
+    starts: Vec<(usize, f64)>,
+}
+
+/// Places farther than this are searched for one by one, in metres.
+const FARTHEST_M: f64 = 500.0;
+
+impl Kerb {
+    /// The outline of `block`.
+    pub fn of(block: &Polygon) -> Self {
+        let rings: Vec<Ring> = block.rings().map(Ring::of).collect();
+        let mut starts = Vec::new();
+        for (r, ring) in block.rings().enumerate() {
+            let mut at = 0.0;
+            for i in 0..ring.len() {
+                starts.push((r, at));
+                at += ring[i].distance_m(ring[(i + 1) % ring.len()]);
+            }
+        }
+        Self { rings, grid: SegmentGrid::new(block.segments().collect()), starts }
+    }
+
+    /// Length of all rings in metres.
+    pub fn length_m(&self) -> f64 {
+        self.rings.iter().map(Ring::length_m).sum()
+    }
+
+    /// The segments near a point, for tests that need no place.
+    pub fn grid(&self) -> &SegmentGrid {
+        &self.grid
+    }
+
+    /// The ring and place on it nearest to `p`. About O(1) near the kerb.
+    pub fn nearest(&self, p: Vec2) -> (usize, Place) {
+        let at = GridPoint::round(p);
+        let mut near = Vec::new();
+        let mut within_m = 8.0;
+        while within_m <= FARTHEST_M {
+            self.grid.near(at, at, (within_m * 1000.0) as i32, &mut near);
+            let best = self.best(p, near.iter().copied());
+            if let Some(found) = best.filter(|(_, place)| place.distance_m <= within_m) {
+                return found;
+            }
+            within_m *= 3.0;
+        }
+        let all = 0..self.starts.len() as u32;
+        self.best(p, all).unwrap_or((0, Place { at_m: 0.0, distance_m: 0.0, direction: Vec2::X }))
+    }
+
+    fn best(&self, p: Vec2, segments: impl Iterator<Item = u32>) -> Option<(usize, Place)> {
+        let place = |id: u32| {
+            let (a, b) = self.grid.segment(id);
+            let (a, b) = (a.to_m(), b.to_m());
+            let (q, t) = polyline::nearest_on_segment(a, b, p);
+            let (ring, start) = self.starts[id as usize];
+            let at_m = start + t * a.distance(b);
+            let direction = (b - a).normalize_or_zero();
+            (ring, Place { at_m, distance_m: q.distance(p), direction })
+        };
+        segments.map(place).min_by(|a, b| a.1.distance_m.total_cmp(&b.1.distance_m))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_place_is_that_of_a_walk_over_all_rings() {
+        let ring = |r: f64, c: (f64, f64), turn: f64| -> Vec<GridPoint> {
+            (0..40)
+                .map(|i| exurb_geom::trig::unit(turn * f64::from(i) * std::f64::consts::TAU / 40.0))
+                .map(|u| GridPoint::m(c.0 + u.x * r, c.1 + u.y * r * 0.4))
+                .collect()
+        };
+        let block = Polygon::new(ring(300.0, (0., 0.), 1.0), vec![ring(40.0, (90., 9.), -1.0)])
+            .expect("has area");
+        let kerb = Kerb::of(&block);
+        for i in 0..200 {
+            let k = f64::from(i);
+            let p = Vec2::new((k * 37.7) % 900.0 - 450.0, (k * 61.3) % 900.0 - 450.0);
+            let walked = kerb.rings.iter().map(|r| r.nearest(p).distance_m);
+            let walked = walked.fold(f64::INFINITY, f64::min);
+            let (r, place) = kerb.nearest(p);
+            assert!((place.distance_m - walked).abs() < 1e-9, "{p}");
+            assert!(kerb.rings[r].point_at(place.at_m).distance(p) - walked < 1e-6, "{p}");
+        }
+    }
+}
