@@ -23,19 +23,13 @@ impl<'a, T> Lookup<'a, T> {
         Self { list, polygon, boxes: BoxGrid::of(list.iter().map(polygon)) }
     }
 
-    /// Places in the list of those that hold `p`, ascending.
-    fn containing(&self, p: Vec2) -> impl Iterator<Item = usize> + use<'_, 'a, T> {
+    /// The number of the first one that holds `p`, counted from 1; 0 when none does.
+    fn number(&self, p: Vec2) -> u32 {
         let p = GridPoint::round(p);
         let mut near = Vec::new();
         self.boxes.meeting(p, p, &mut near);
-        near.into_iter()
-            .map(|i| i as usize)
-            .filter(move |i| (self.polygon)(&self.list[*i]).contains(p))
-    }
-
-    /// The number of the first one that holds `p`, counted from 1; 0 when none does.
-    fn number(&self, p: Vec2) -> u32 {
-        self.containing(p).next().map_or(0, |i| i as u32 + 1)
+        let found = near.iter().find(|i| (self.polygon)(&self.list[**i as usize]).contains(p));
+        found.map_or(0, |i| i + 1)
     }
 }
 
@@ -75,41 +69,58 @@ pub fn use_land(blocks: &mut [Block], land_use: &[Area]) {
     if land_use.is_empty() {
         return;
     }
-    let areas = Lookup::new(land_use, |a| &a.polygon);
+    let boxes = BoxGrid::of(land_use.iter().map(|a| &a.polygon));
     let sizes: Vec<f64> = land_use.iter().map(|a| a.polygon.area_m2()).collect();
     blocks.par_iter_mut().for_each(|block| {
-        let samples = samples(&block.polygon);
-        let mut votes: Vec<(Arc<str>, usize)> = Vec::new();
-        for p in &samples {
-            let smallest = areas.containing(*p).min_by(|i, j| sizes[*i].total_cmp(&sizes[*j]));
-            let Some(class) = smallest.map(|i| &land_use[i].class) else { continue };
-            match votes.iter_mut().find(|(c, _)| c == class) {
-                Some((_, n)) => *n += 1,
-                None => votes.push((class.clone(), 1)),
-            }
+        let mut near = Vec::new();
+        boxes.meeting_polygon(&block.polygon, &mut near);
+        // Smallest first: the first that holds a point decides.
+        near.sort_by(|i, j| sizes[*i as usize].total_cmp(&sizes[*j as usize]).then(i.cmp(j)));
+        if !near.is_empty() {
+            let near: Vec<&Area> = near.iter().map(|i| &land_use[*i as usize]).collect();
+            block.land_use = prevailing(&block.polygon, &near);
         }
-        block.land_use =
-            votes.into_iter().find(|(_, n)| 2 * n > samples.len()).map(|(class, _)| class);
     });
 }
 
+/// The class of the areas, of which the first that holds a point decides, over most of a polygon.
+fn prevailing(polygon: &Polygon, areas: &[&Area]) -> Option<Arc<str>> {
+    let samples = samples(polygon);
+    let mut votes: Vec<(&Arc<str>, usize)> = Vec::new();
+    for p in &samples {
+        let Some(area) = areas.iter().find(|a| a.polygon.contains(*p)) else { continue };
+        match votes.iter_mut().find(|(class, _)| **class == area.class) {
+            Some((_, n)) => *n += 1,
+            None => votes.push((&area.class, 1)),
+        }
+    }
+    votes.into_iter().find(|(_, n)| 2 * n > samples.len()).map(|(class, _)| class.clone())
+}
+
 /// Points of a square grid inside a polygon, about [`SAMPLES`] of them; its interior point where
-/// the grid misses it.
-fn samples(polygon: &Polygon) -> Vec<Vec2> {
+/// the grid misses it. Row by row, between the crossings of the boundary.
+fn samples(polygon: &Polygon) -> Vec<GridPoint> {
     let Bounds { min, max } = polygon.bounds();
     let step = (polygon.area_m2() / SAMPLES).sqrt().max(0.5);
-    let count = (max - min) / step;
     let mut out = Vec::new();
-    for y in 0..=count.y as u32 {
-        for x in 0..=count.x as u32 {
-            let p = min + (Vec2::new(f64::from(x), f64::from(y)) + 0.5) * step;
-            if polygon.contains(GridPoint::round(p)) {
-                out.push(p);
-            }
+    let mut crossings: Vec<f64> = Vec::new();
+    for row in 0..=((max.y - min.y) / step) as u32 {
+        let y = min.y + (f64::from(row) + 0.5) * step;
+        let cut = polygon.segments().map(|(a, b)| (a.to_m(), b.to_m()));
+        crossings.clear();
+        crossings.extend(
+            cut.filter(|(a, b)| (a.y > y) != (b.y > y))
+                .map(|(a, b)| a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y)),
+        );
+        crossings.sort_by(f64::total_cmp);
+        for inside in crossings.chunks_exact(2) {
+            let column = |x: f64| (x - min.x) / step - 0.5;
+            let (first, last) = (column(inside[0]).ceil() as i64, column(inside[1]).floor() as i64);
+            out.extend((first..=last).map(|i| GridPoint::m(min.x + (i as f64 + 0.5) * step, y)));
         }
     }
     if out.is_empty() {
-        out.push(polygon.interior_point());
+        out.push(GridPoint::round(polygon.interior_point()));
     }
     out
 }

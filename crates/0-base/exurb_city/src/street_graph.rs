@@ -1,11 +1,11 @@
 //! Streets as every learner, synthesiser and measure sees them: planar but for bridges and tunnels,
 //! undirected, nodes where streets meet, end or change level or class.
 
-use std::collections::BTreeMap;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use exurb_geom::{GridPoint, Polygon};
-use exurb_graph::{EdgeId, Graph, NodeId, noding};
+use exurb_graph::{Dart, EdgeId, Graph, NodeId, noding};
 
 use crate::{Class, Origin, Provenance, Role, StreetMap};
 
@@ -113,23 +113,16 @@ pub fn derive(map: &StreetMap, options: &Derive) -> StreetGraph {
     };
     // 2 Ways of different levels meet at shared nodes that are an end of one of them: the foot of a
     // ramp. Split there first; crossings within a level follow.
-    let mut uses: BTreeMap<i64, (u32, i32, bool)> = BTreeMap::new();
-    for way in kept() {
-        let level = way.street.crossing_level();
-        for (i, id) in way.nodes.iter().enumerate() {
-            let end = i == 0 || i + 1 == way.nodes.len();
-            let entry = uses.entry(*id).or_insert((0, level, false));
-            entry.0 += 1;
-            entry.2 |= entry.1 != level || end;
-        }
-    }
+    let mut shared: Vec<i64> = kept().flat_map(|w| w.nodes.iter().copied()).collect();
+    shared.sort_unstable();
+    shared = shared.chunk_by(|a, b| a == b).filter(|same| same.len() > 1).map(|s| s[0]).collect();
     let mut lines = Vec::new();
     for (number, way) in kept().enumerate() {
         let level = way.street.crossing_level();
         let mut start = 0;
         for i in 1..way.line.len() {
-            let shared = way.nodes.get(i).and_then(|id| uses.get(id)).is_some_and(|u| u.0 > 1);
-            if shared || i + 1 == way.line.len() {
+            let is_shared = way.nodes.get(i).is_some_and(|id| shared.binary_search(id).is_ok());
+            if is_shared || i + 1 == way.line.len() {
                 let points = way.line[start..=i].to_vec();
                 lines.push(noding::Line { points, level, data: number });
                 start = i;
@@ -148,30 +141,28 @@ pub fn derive(map: &StreetMap, options: &Derive) -> StreetGraph {
         }
     }
     dissolve_all(&mut graph);
-    graph.compacted()
+    graph.into_compacted()
 }
 
 /// A graph of lines that meet at equal end points; exact duplicates (same line, either direction)
 /// are dropped, the first one stays.
 pub fn from_lines(lines: impl IntoIterator<Item = (Vec<GridPoint>, Street)>) -> StreetGraph {
     let mut graph = StreetGraph::new();
-    let mut at: BTreeMap<GridPoint, NodeId> = BTreeMap::new();
-    let mut seen = std::collections::BTreeSet::new();
+    let mut at: HashMap<GridPoint, NodeId> = HashMap::new();
     for (line, street) in lines {
         let (Some(first), Some(last)) = (line.first().copied(), line.last().copied()) else {
             continue;
         };
-        let mut key = line.clone();
-        if key.iter().rev().lt(key.iter()) {
-            key.reverse();
-        }
-        if !seen.insert(key) {
-            continue;
-        }
         let mut node =
             |p, g: &mut StreetGraph| *at.entry(p).or_insert_with(|| g.add_node(p, Junction::default()));
         let (from, to) = (node(first, &mut graph), node(last, &mut graph));
-        graph.add_edge(from, to, line, street);
+        let is_same = |dart: &Dart| {
+            let known = graph.edge(dart.edge()).line();
+            known == line || (known.len() == line.len() && known.iter().rev().eq(&line))
+        };
+        if !graph.darts(from).iter().any(is_same) {
+            graph.add_edge(from, to, line, street);
+        }
     }
     graph.remove_isolated_nodes();
     graph

@@ -137,6 +137,22 @@ impl<N: Clone + Default, E: Clone> Graph<N, E> {
         }
     }
 
+    /// [`Graph::compacted`] that takes the graph, so that no line is held twice.
+    pub fn into_compacted(self) -> Self {
+        let mut out = Self::new();
+        let mut new_id = vec![NodeId(u32::MAX); self.node_bound()];
+        let (nodes, edges) = self.into_parts();
+        for (id, node) in nodes {
+            new_id[id.index()] = out.add_node(node.at, node.data);
+        }
+        for (_, edge) in edges {
+            let (from, to) = (new_id[edge.from.index()], new_id[edge.to.index()]);
+            let (line, data) = edge.into_parts();
+            out.add_edge(from, to, line, data);
+        }
+        out
+    }
+
     /// The same graph without gaps in its ids: nodes and edges renumbered in their order.
     pub fn compacted(&self) -> Self {
         let mut out = Self::new();

@@ -40,6 +40,11 @@ impl<E> Edge<E> {
     pub fn line_m(&self) -> Vec<Vec2> {
         polyline::to_m(&self.line)
     }
+
+    /// Line and payload.
+    pub fn into_parts(self) -> (Vec<GridPoint>, E) {
+        (self.line, self.data)
+    }
 }
 
 /// An undirected graph drawn in the plane, with parallel edges and loops.
@@ -158,6 +163,19 @@ impl<N, E> Graph<N, E> {
     /// All edges in order.
     pub fn edges(&self) -> impl DoubleEndedIterator<Item = (EdgeId, &Edge<E>)> + Clone {
         self.edges.iter().enumerate().filter_map(|(i, e)| Some((EdgeId(i as u32), e.as_ref()?)))
+    }
+
+    /// All nodes and all edges, in order.
+    #[allow(clippy::type_complexity, reason = "two lists that are taken apart at once")]
+    pub fn into_parts(
+        self,
+    ) -> (impl Iterator<Item = (NodeId, Node<N>)>, impl Iterator<Item = (EdgeId, Edge<E>)>) {
+        let nodes = self.nodes.into_iter().enumerate();
+        let edges = self.edges.into_iter().enumerate();
+        (
+            nodes.filter_map(|(i, n)| Some((NodeId(i as u32), n?))),
+            edges.filter_map(|(i, e)| Some((EdgeId(i as u32), e?))),
+        )
     }
 
     /// Number of nodes.

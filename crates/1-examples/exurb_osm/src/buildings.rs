@@ -26,13 +26,13 @@ pub fn building(tags: &Tags, polygon: Polygon) -> Building {
     out.min_height_m = metres("min_height").or(lifted).unwrap_or(0.0);
     out.roof = tags.get("roof:shape").and_then(Roof::parse);
     out.is_part = !tags.says("building");
-    out.usage = usage(tags).map(Arc::from);
+    out.usage = usage(tags);
     out
 }
 
 /// The value of `building`; of `shop`, `amenity` or `office` where that only says yes.
-fn usage(tags: &Tags) -> Option<&str> {
-    let given = |key| tags.get(key).filter(|v| !matches!(*v, "yes" | "no"));
+fn usage(tags: &Tags) -> Option<Arc<str>> {
+    let given = |key| tags.get_shared(key).filter(|v| !matches!(&**v, "yes" | "no"));
     ["building", "building:part", "shop", "amenity", "office"].into_iter().find_map(given)
 }
 

@@ -1,7 +1,7 @@
 //! What every reader delivers: nodes, ways and relations of a file, as far as they can matter.
 
-use crate::features;
 use crate::tags::Tags;
+use crate::{features, streets, surfaces};
 
 /// A node's place in 1e-7 degrees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -41,8 +41,8 @@ pub type Bounds = [f64; 4];
 
 /// The elements of a file, in any order until [`Elements::sort`].
 ///
-/// Ways are kept whether or not their own tags matter, because a relation read later may name them;
-/// of tags only the keys that matter are kept, of tagged nodes only features.
+/// Ways are kept whether or not they are something by themselves, because a relation read later may
+/// name them; tags only of ways that are, and only keys that matter; of tagged nodes only features.
 #[derive(Debug, Default)]
 pub struct Elements {
     /// Where the data are complete, as the file declares it.
@@ -75,12 +75,14 @@ impl Elements {
     /// Adds the tags of a node, if they make it a feature.
     pub fn push_node_tags(&mut self, id: i64, tags: Tags) {
         if features::kind(&tags).is_some() {
-            self.tagged.push((id, tags));
+            self.tagged.push((id, tags.shrunk()));
         }
     }
 
-    /// Adds a way.
+    /// Adds a way; its tags are kept if they make it something.
     pub fn push_way(&mut self, id: i64, tags: Tags, refs: impl IntoIterator<Item = i64>) {
+        let matters = streets::class(&tags).is_some() || surfaces::matters(&tags);
+        let tags = if matters { tags.shrunk() } else { Tags::default() };
         let start = self.refs.len();
         self.refs.extend(refs);
         self.ways.push(Way { id, tags, start, end: self.refs.len() });

@@ -205,7 +205,9 @@ impl<'de> Deserialize<'de> for Tags {
             fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Tags, A::Error> {
                 let mut tags = Tags::default();
                 while let Some((key, value)) = map.next_entry::<String, String>()? {
-                    tags.push_if_kept(&key, &value);
+                    if let Some(key) = crate::tags::key(&key) {
+                        tags.push(key, value);
+                    }
                 }
                 Ok(tags)
             }

@@ -3,7 +3,9 @@
 //! Decoded with the messages of [`crate::pbf_format`] rather than a reader crate: those at hand
 //! panic on corrupt deltas and unknown member types.
 
+use std::cell::OnceCell;
 use std::io::{BufRead, Read};
+use std::sync::Arc;
 
 use flate2::bufread::ZlibDecoder;
 use prost::Message;
@@ -15,7 +17,7 @@ use crate::elements::{Elements, Member};
 use crate::pbf_format as pbf;
 use crate::pbf_format::{GRANULARITY, MAX_BLOB_BYTES, MAX_HEADER_BYTES};
 use crate::read::Ratio;
-use crate::tags::{self, Tags};
+use crate::tags::{self, Key, Tags};
 
 /// Blobs decoded at a time: enough for every core, few enough to stay small.
 const BATCH: usize = 64;
@@ -151,8 +153,9 @@ fn decode_header(data: Bytes) -> Result<Decoded, String> {
 
 /// The string table of a block, with the keys that matter found once, and its scale.
 struct Block<'a> {
-    keys: Vec<Option<&'static str>>,
-    values: &'a [Bytes],
+    keys: Vec<Option<Key>>,
+    texts: &'a [Bytes],
+    values: Vec<OnceCell<Option<Arc<str>>>>,
     granularity: i64,
     lat_offset: i64,
     lon_offset: i64,
@@ -160,11 +163,12 @@ struct Block<'a> {
 
 impl<'a> Block<'a> {
     fn new(block: &'a pbf::PrimitiveBlock) -> Self {
-        let values = &block.stringtable.s[..];
-        let keys = values.iter().map(|s| std::str::from_utf8(s).ok().and_then(tags::key)).collect();
+        let texts = &block.stringtable.s[..];
+        let keys = texts.iter().map(|s| std::str::from_utf8(s).ok().and_then(tags::key)).collect();
         Self {
             keys,
-            values,
+            texts,
+            values: vec![OnceCell::new(); texts.len()],
             granularity: i64::from(block.granularity.unwrap_or(GRANULARITY)),
             lat_offset: block.lat_offset.unwrap_or(0),
             lon_offset: block.lon_offset.unwrap_or(0),
@@ -221,7 +225,7 @@ impl<'a> Block<'a> {
             .zip(kinds)
             .filter(|(_, (kind, _))| **kind == WAY)
             .map(|(way, (_, role))| {
-                let role = usize::try_from(*role).ok().and_then(|role| self.values.get(role));
+                let role = usize::try_from(*role).ok().and_then(|role| self.texts.get(role));
                 Member { way, is_inner: role.is_some_and(|role| role == "inner") }
             })
             .collect()
@@ -243,12 +247,17 @@ impl<'a> Block<'a> {
     }
 
     fn tag(&self, key: usize, value: usize, tags: &mut Tags) {
-        let value = || std::str::from_utf8(self.values.get(value)?).ok();
         if let Some(key) = self.keys.get(key).copied().flatten()
-            && let Some(value) = value()
+            && let Some(value) = self.value(value)
         {
             tags.push(key, value);
         }
+    }
+
+    /// A value, one copy for all elements of the block; `None` when it is no text.
+    fn value(&self, at: usize) -> Option<Arc<str>> {
+        let text = || std::str::from_utf8(&self.texts[at]).ok().map(Arc::from);
+        self.values.get(at)?.get_or_init(text).clone()
     }
 }
 

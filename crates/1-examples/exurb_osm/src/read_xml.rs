@@ -193,7 +193,7 @@ fn tag_of(tag: &BytesStart, open: &mut Open) {
         }
     }
     if let (Some(key), Some(text)) = (key, text) {
-        open.tags.push(key, &text);
+        open.tags.push(key, &*text);
     }
 }
 

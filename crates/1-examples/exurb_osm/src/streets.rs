@@ -1,7 +1,5 @@
 //! Streets: classes, lanes, widths, directions.
 
-use std::sync::Arc;
-
 use exurb_city::{Class, Street, Way};
 use exurb_geom::GridPoint;
 use rayon::prelude::*;
@@ -24,44 +22,55 @@ pub fn class(tags: &Tags) -> Option<Class> {
 
 /// The streets of a file, in order of way ids; a way is split where a node is missing.
 pub fn read(elements: &Elements, places: &Places) -> Streets {
-    let per_way: Vec<Streets> = elements
+    // In runs of ways, so that few lists are joined.
+    let runs: Vec<Streets> = elements
         .ways
-        .par_iter()
-        .filter_map(|way| Some(pieces(elements, places, way, class(&way.tags)?)))
+        .par_chunks(1024)
+        .map(|ways| {
+            let mut out = Streets::default();
+            for way in ways {
+                if let Some(class) = class(&way.tags) {
+                    out.add(elements, places, way, class);
+                }
+            }
+            out
+        })
         .collect();
     let mut out = Streets::default();
-    for mut streets in per_way {
-        out.ways.append(&mut streets.ways);
-        out.broken_ends.append(&mut streets.broken_ends);
+    out.ways.reserve_exact(runs.iter().map(|r| r.ways.len()).sum());
+    for mut run in runs {
+        out.ways.append(&mut run.ways);
+        out.broken_ends.append(&mut run.broken_ends);
     }
     out
 }
 
-fn pieces(elements: &Elements, places: &Places, way: &elements::Way, class: Class) -> Streets {
-    let vertices: Vec<Option<Vertex>> = places.vertices(elements, way).collect();
-    let mut out = Streets::default();
-    let runs: Vec<&[Option<Vertex>]> = vertices.split(Option::is_none).collect();
-    let last = runs.len() - 1;
-    for (i, run) in runs.into_iter().enumerate() {
-        let mut run: Vec<Vertex> = run.iter().copied().flatten().collect();
-        run.dedup_by(|b, a| a.1 == b.1);
-        if run.len() < 2 {
-            continue;
+impl Streets {
+    /// Adds the pieces of a way between missing nodes.
+    fn add(&mut self, elements: &Elements, places: &Places, way: &elements::Way, class: Class) {
+        let vertices: Vec<Option<Vertex>> = places.vertices(elements, way).collect();
+        let runs: Vec<&[Option<Vertex>]> = vertices.split(Option::is_none).collect();
+        let last = runs.len() - 1;
+        for (i, run) in runs.into_iter().enumerate() {
+            let mut run: Vec<Vertex> = run.iter().copied().flatten().collect();
+            run.dedup_by(|b, a| a.1 == b.1);
+            if run.len() < 2 {
+                continue;
+            }
+            if i > 0 {
+                self.broken_ends.push(run[0].1);
+            }
+            if i < last {
+                self.broken_ends.push(run[run.len() - 1].1);
+            }
+            let (street, backwards) = street(&way.tags, class);
+            if backwards {
+                run.reverse();
+            }
+            let (nodes, line) = run.into_iter().unzip();
+            self.ways.push(Way { id: way.id, line, nodes, street });
         }
-        if i > 0 {
-            out.broken_ends.push(run[0].1);
-        }
-        if i < last {
-            out.broken_ends.push(run[run.len() - 1].1);
-        }
-        let (street, backwards) = street(&way.tags, class);
-        if backwards {
-            run.reverse();
-        }
-        let (nodes, line) = run.into_iter().unzip();
-        out.ways.push(Way { id: way.id, line, nodes, street });
     }
-    out
 }
 
 /// What the tags tell of a street, and whether it is driven against its line.
@@ -85,7 +94,7 @@ fn street(tags: &Tags, class: Class) -> (Street, bool) {
         tunnel: tags.says("tunnel"),
         layer: tags.get("layer").and_then(|v| tags::whole(v, -10, 10)).unwrap_or(0) as i8,
         roundabout: matches!(junction, Some("roundabout" | "circular")),
-        name: tags.get("name").map(Arc::from),
+        name: tags.get_shared("name"),
         ..Street::default()
     };
     (street, backwards)

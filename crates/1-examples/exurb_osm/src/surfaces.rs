@@ -56,30 +56,34 @@ struct Counts {
     others: Repairs,
 }
 
+/// Ways handled at a time.
+const PART: usize = 1 << 15;
+
 /// Reads all layers but streets into the draft.
 pub fn read(elements: &Elements, places: &Places, draft: &mut Draft, warnings: &mut Vec<String>) {
     let (relations, outer) = relations(elements);
-    let of_ways = elements
-        .ways
-        .par_iter()
-        .enumerate()
-        .filter(|(i, way)| !way.tags.is_empty() && outer.binary_search(i).is_err());
-    let of_ways = of_ways.filter_map(|(_, way)| {
-        let kind = kind(&way.tags)?;
-        Some(from_way(elements, places, way, &kind))
-    });
+    let mut counts = Counts::default();
+    let mut take = |all: Vec<(bool, Vec<Found>, Repairs)>, draft: &mut Draft| {
+        for (is_building, found, repairs) in all {
+            (if is_building { &mut counts.buildings } else { &mut counts.others }).add(repairs);
+            found.into_iter().for_each(|found| put(found, draft));
+        }
+    };
+    // A part at a time, so that what is on its way stays small.
+    for (part, ways) in elements.ways.chunks(PART).enumerate() {
+        let of_ways = ways.par_iter().enumerate().filter_map(|(i, way)| {
+            let is_spent = outer.binary_search(&(part * PART + i)).is_ok();
+            let kind = if way.tags.is_empty() || is_spent { None } else { kind(&way.tags) };
+            Some(from_way(elements, places, way, &kind?))
+        });
+        take(of_ways.collect(), draft);
+    }
     let of_relations = relations.par_iter().map(|(kind, tags, ways)| {
         let mut repairs = Repairs::default();
         let polygons = outline::of_ways(elements, places, ways, &mut repairs);
         (*kind == Kind::Building, found(kind, tags, polygons), repairs)
     });
-    let all: Vec<_> =
-        of_ways.collect::<Vec<_>>().into_iter().chain(of_relations.collect::<Vec<_>>()).collect();
-    let mut counts = Counts::default();
-    for (is_building, found, repairs) in all {
-        (if is_building { &mut counts.buildings } else { &mut counts.others }).add(repairs);
-        found.into_iter().for_each(|found| put(found, draft));
-    }
+    take(of_relations.collect(), draft);
     waterways(elements, places, draft);
     coast(elements, places, draft, warnings);
     for (id, tags) in &elements.tagged {

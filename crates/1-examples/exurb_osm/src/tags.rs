@@ -1,5 +1,7 @@
 //! Tags: the keys that matter and how their values are read.
 
+use std::sync::Arc;
+
 /// The keys that matter; all others are dropped while reading. Sorted.
 const KEYS: [&str; 37] = [
     "amenity",
@@ -41,31 +43,33 @@ const KEYS: [&str; 37] = [
     "zoning",
 ];
 
-/// The key as a static word, if it matters.
-pub fn key(key: &str) -> Option<&'static str> {
-    KEYS.binary_search(&key).ok().map(|i| KEYS[i])
+/// A key that matters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Key(u8);
+
+/// The key of that name, if it matters.
+pub fn key(name: &str) -> Option<Key> {
+    KEYS.binary_search(&name).ok().map(|i| Key(i as u8))
 }
 
-/// Tags of an element, as far as they matter.
+/// Tags of an element, as far as they matter. Values are shared where a reader shares them.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Tags(Vec<(&'static str, Box<str>)>);
+pub struct Tags(Vec<(Key, Arc<str>)>);
 
 impl Tags {
-    /// Adds a tag whose key came from [`key`].
-    pub fn push(&mut self, key: &'static str, value: &str) {
+    /// Adds a tag.
+    pub fn push(&mut self, key: Key, value: impl Into<Arc<str>>) {
         self.0.push((key, value.into()));
-    }
-
-    /// Adds a tag if its key matters.
-    pub fn push_if_kept(&mut self, name: &str, value: &str) {
-        if let Some(key) = key(name) {
-            self.push(key, value);
-        }
     }
 
     /// The value of `key`.
     pub fn get(&self, key: &str) -> Option<&str> {
-        self.0.iter().find(|(k, _)| *k == key).map(|(_, v)| &**v)
+        self.iter().find(|(k, _)| *k == key).map(|(_, v)| v)
+    }
+
+    /// The value of `key`, to keep.
+    pub fn get_shared(&self, key: &str) -> Option<Arc<str>> {
+        self.0.iter().find(|(k, _)| KEYS[usize::from(k.0)] == key).map(|(_, v)| v.clone())
     }
 
     /// Is there none?
@@ -80,15 +84,23 @@ impl Tags {
 
     /// All tags.
     pub fn iter(&self) -> impl Iterator<Item = (&'static str, &str)> {
-        self.0.iter().map(|(k, v)| (*k, &**v))
+        self.0.iter().map(|(k, v)| (KEYS[usize::from(k.0)], &**v))
+    }
+
+    /// Gives back memory that no further tag will need.
+    pub fn shrunk(mut self) -> Self {
+        self.0.shrink_to_fit();
+        self
     }
 }
 
 impl<'a> FromIterator<(&'a str, &'a str)> for Tags {
     fn from_iter<I: IntoIterator<Item = (&'a str, &'a str)>>(tags: I) -> Self {
         let mut out = Self::default();
-        for (key, value) in tags {
-            out.push_if_kept(key, value);
+        for (name, value) in tags {
+            if let Some(key) = key(name) {
+                out.push(key, value);
+            }
         }
         out
     }
@@ -138,7 +150,9 @@ mod tests {
     #[test]
     fn the_keys_are_sorted_and_found() {
         assert!(KEYS.is_sorted());
-        assert!(KEYS.iter().all(|k| key(k) == Some(k)));
+        for name in KEYS {
+            assert_eq!(Tags::from_iter([(name, "x")]).iter().next(), Some((name, "x")));
+        }
         assert_eq!(key("addr:street"), None);
     }
 
