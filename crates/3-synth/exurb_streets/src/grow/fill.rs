@@ -2,8 +2,8 @@
 //!
 //! The paper stops when its queue is empty, which can leave large parts of a target without a
 //! street. We learn how far places of the example lie from a street, look for places farther from
-//! one than nearly all of these, and let a street set out towards them. Where the example itself has
-//! wide open land (sea, hills), what counts as empty is as wide.
+//! one than nearly all of these, and let a street set out towards them. Sea and hills of the example,
+//! far from every street, do not count: the target is flat land.
 
 use exurb_geom::{GridPoint, Polygon, SegmentIndex, Vec2, polyline};
 use exurb_operation::Run;
@@ -18,13 +18,20 @@ const NEAR_SHARE: f64 = 0.93;
 const SAMPLE_M: f64 = 100.0;
 /// Distances are learned up to this, in metres.
 const FARTHEST_M: f64 = 1600.0;
+/// Places of the example farther than this from every street are sea or hills, not city, in metres.
+const BUILT_UP_M: f64 = 250.0;
 /// Rounds at most: a round fills what the one before has brought within reach.
 const ROUNDS: usize = 4;
 
-/// How far from the streets of `index` a place of `area` must lie to count as empty, in metres.
-pub fn empty_distance_m(area: &Polygon, index: &SegmentIndex) -> f64 {
-    let mut distances: Vec<f64> =
-        places(area, SAMPLE_M).into_iter().map(|p| street_distance(index, p)).collect();
+/// How far from the streets of `index` a place must lie to count as empty, in metres: learned from the
+/// places of `area` that lie in the built-up parts, near some street of `all`.
+pub fn empty_distance_m(area: &Polygon, index: &SegmentIndex, all: &SegmentIndex) -> f64 {
+    let built_up = |p: &Vec2| street_distance(all, *p) < BUILT_UP_M;
+    let mut distances: Vec<f64> = places(area, SAMPLE_M)
+        .into_iter()
+        .filter(built_up)
+        .map(|p| street_distance(index, p))
+        .collect();
     distances.sort_by(f64::total_cmp);
     let rank = (distances.len() as f64 * NEAR_SHARE) as usize;
     distances.get(rank).copied().unwrap_or(FARTHEST_M).max(60.0)

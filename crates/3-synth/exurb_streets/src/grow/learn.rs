@@ -6,7 +6,7 @@ use std::sync::Arc;
 use exurb_city::street_graph::StreetGraph;
 use exurb_city::{City, Role};
 use exurb_geom::{GridPoint, LonLat, Polygon, SegmentIndex, Vec2, polyline};
-use exurb_graph::NodeId;
+use exurb_graph::{EdgeId, NodeId};
 use exurb_measure::statistics::{StreetStatistics, street_statistics};
 
 use super::error::Error;
@@ -141,6 +141,7 @@ pub fn learn(city: &City, params: &Params) -> Result<Vocabulary, Error> {
     }
     let is_main = main_edges(&graph);
     let polygons = kept_polygons(city, params)?;
+    let all = street_index(&graph, |_| true);
     let style = |role: Role| {
         let mut layer = Layer::of(&graph, role, &is_main);
         let (circle_m, reach_m, word) = match role {
@@ -152,13 +153,11 @@ pub fn learn(city: &City, params: &Params) -> Result<Vocabulary, Error> {
         let patches = patch::extract(&mut layer, &[&kept, &circles], reach_m, word);
         let connectors = Connectors::of(&layer, &patches);
         let statistics = street_statistics(&graph, role);
-        let mut index = SegmentIndex::new(60.0);
-        for (id, edge) in graph.edges() {
-            if role != Role::Main || is_main[id.index()] {
-                index.insert_line(id.0, &edge.line_m());
-            }
-        }
-        let empty_m = fill::empty_distance_m(&city.target, &index);
+        let streets = match role {
+            Role::Main => street_index(&graph, |id| is_main[id.index()]),
+            _ => all.clone(),
+        };
+        let empty_m = fill::empty_distance_m(&city.target, &streets, &all);
         Style { layer, patches, connectors, statistics, empty_m }
     };
     let (main, local) = (style(Role::Main), style(Role::Local));
@@ -167,6 +166,14 @@ pub fn learn(city: &City, params: &Params) -> Result<Vocabulary, Error> {
     }
     let gates = exurb_city::laws::gates(city);
     Ok(Vocabulary { center: center_of(&graph), name, main, local, gates })
+}
+
+fn street_index(graph: &StreetGraph, keep: impl Fn(EdgeId) -> bool) -> SegmentIndex {
+    let mut index = SegmentIndex::new(60.0);
+    for (id, edge) in graph.edges().filter(|(id, _)| keep(*id)) {
+        index.insert_line(id.0, &edge.line_m());
+    }
+    index
 }
 
 /// Which edges are grown in the main pass: streets of role main, and the local streets that tie
