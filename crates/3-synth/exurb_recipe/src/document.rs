@@ -55,7 +55,7 @@ impl Recipe {
     /// One form for all recipes that do the same: parameters sorted by name, numbers as the
     /// operation has them, defaults left out.
     pub fn normalise(&mut self, registry: &Registry) {
-        let all: Vec<String> = self.examples.iter().map(Source::name).collect();
+        let all: Vec<String> = self.examples.iter().map(Source::key).collect();
         for step in &mut self.steps {
             if !all.is_empty() && step.examples.as_ref() == Some(&all) {
                 step.examples = None;
@@ -81,7 +81,7 @@ impl Recipe {
                 return Err(format!("`weight` of {name} is {weight}, expected a positive number"));
             }
         }
-        let names: Vec<String> = self.examples.iter().map(Source::name).collect();
+        let names: Vec<String> = self.examples.iter().map(Source::key).collect();
         if let Some(name) = doubled(&names) {
             return Err(format!("two examples are named `{name}`; give one another `name`"));
         }

@@ -16,6 +16,7 @@ file = "maps/helsinki.osm.pbf"
 
 [[examples]]
 file = "b.gpkg"
+id = "o"
 name = "other"
 weight = 2.5
 bbox = [-1.0, 2.0, 3.0, 4.0]
@@ -30,7 +31,7 @@ length_m = 20.0
 [[steps]]
 op = "buildings stack"
 seed = 9
-examples = ["other"]
+examples = ["o"]
 
 [steps.scope]
 blocks = [1, 4]
@@ -63,30 +64,30 @@ fn mistakes_are_named_with_their_line() {
         (
             "streets draw",
             "streets drow",
-            "r.toml, line 20: there is no operation `streets drow`; there are `streets draw`, `buildings stack`",
+            "r.toml, line 21: there is no operation `streets drow`; there are `streets draw`, `buildings stack`",
         ),
         (
             "length_m",
             "lenth_m",
-            "r.toml, line 22: streets draw: there is no parameter `lenth_m`; there are ",
+            "r.toml, line 23: streets draw: there is no parameter `lenth_m`; there are ",
         ),
         (
             "length_m = 20.0",
             "length_m = 200",
-            "r.toml, line 22: streets draw: `length_m` is 200, expected 1 to 100 m",
+            "r.toml, line 23: streets draw: `length_m` is 200, expected 1 to 100 m",
         ),
         ("800x600.5", "0x0", "r.toml, line 5: a target of 0 m x 0 m is too small"),
         (
-            "[\"other\"]",
+            "[\"o\"]",
             "[\"nobody\"]",
-            "r.toml: there is no example named `nobody`; there are: helsinki, other",
+            "r.toml: there is no example named `nobody`; there are: helsinki, o",
         ),
         ("weight = 2.5", "weight = -1", "r.toml: `weight` of other is -1"),
-        ("name = \"other\"", "name = \"helsinki\"", "r.toml: two examples are named `helsinki`"),
+        ("id = \"o\"\n", "id = \"helsinki\"\n", "r.toml: two examples are named `helsinki`"),
         ("view.png", "city.gpkg", "r.toml: city.gpkg is exported twice"),
         ("threads = 2", "threads = 0", "r.toml: `threads` is out of range"),
-        ("part = \"west\"", "part = \"top\"", "r.toml, line 16: unknown variant `top`"),
-        ("view = ", "wiev = ", "r.toml, line 37: unknown field `wiev`"),
+        ("part = \"west\"", "part = \"top\"", "r.toml, line 17: unknown variant `top`"),
+        ("view = ", "wiev = ", "r.toml, line 38: unknown field `wiev`"),
         ("[target]", "[target", "r.toml, line 5: "),
         ("file = \"b.gpkg\"\n", "", "r.toml, line 11: missing field `file`"),
     ] {

@@ -37,10 +37,12 @@ impl Recipe {
             return self;
         };
         let was = whole.examples.len();
+        // The weight of an only example says nothing.
+        let alone = self.examples.len() == 1;
         let names: Vec<String> =
-            self.examples.iter().map(|source| whole.adopt(source.clone())).collect();
+            self.examples.iter().map(|source| whole.adopt(source.clone(), alone)).collect();
         if whole.examples.len() > was {
-            let before: Vec<String> = whole.examples[..was].iter().map(Source::name).collect();
+            let before: Vec<String> = whole.examples[..was].iter().map(Source::key).collect();
             limit(&mut whole.steps, &before);
         }
         let mut steps = self.steps;
@@ -83,20 +85,26 @@ impl Recipe {
         Ok(Ok(()))
     }
 
-    /// The name under which the recipe has a source, which it gets if it lacks it.
-    fn adopt(&mut self, source: Source) -> String {
-        if let Some(known) = self.examples.iter().find(|known| **known == source) {
-            return known.name();
+    /// The key under which the recipe has a source, which it gets if it lacks it. Its name stays,
+    /// since what was copied bears it.
+    fn adopt(&mut self, source: Source, alone: bool) -> String {
+        let same = |known: &&Source| {
+            let weight = if alone { source.weight } else { known.weight };
+            Source { id: source.id.clone(), weight, ..(*known).clone() } == source
+        };
+        if let Some(known) = self.examples.iter().find(same) {
+            return known.key();
         }
-        let mut source = source;
         let plain = source.name();
+        let mut source = Source { id: None, ..source };
         let mut number = 2;
-        while self.examples.iter().any(|known| known.name() == source.name()) {
-            source.name = Some(format!("{plain}-{number}"));
+        while self.examples.iter().any(|known| known.key() == source.key()) {
+            source.id = Some(format!("{plain}-{number}"));
             number += 1;
         }
+        let key = source.key();
         self.examples.push(source);
-        self.examples.last().map(Source::name).unwrap_or(plain)
+        key
     }
 }
 

@@ -73,6 +73,20 @@ fn the_recipe_of_several_commands_makes_the_same_city_in_one() {
 }
 
 #[test]
+fn the_same_file_taken_otherwise_is_another_example_of_the_same_name() {
+    let mut second = stack(&["a.osm"], 5);
+    second.examples[0].part = Some(crate::Half::West);
+    second.examples[0].weight = 2.0;
+    let city = make(&second, Some(make(&draw(), None)));
+    let city = make(&stack(&["a.osm"], 5), Some(city));
+    let whole = Recipe::parse_with(&city.metadata.recipe, "", &registry()).unwrap();
+    let keys: Vec<String> = whole.examples.iter().map(Source::key).collect();
+    assert_eq!(keys, ["a", "a-2"]);
+    assert_eq!(whole.steps[1].examples, Some(vec!["a-2".to_owned()]));
+    assert_eq!(content(&make(&whole, None)), content(&city));
+}
+
+#[test]
 fn a_city_without_a_recipe_stays_the_beginning() {
     let import = (*example("import").city).clone();
     let city = make(&stack(&["a.osm"], 1), Some(import));

@@ -41,7 +41,7 @@ mod test_operation;
 
 pub use error::Error;
 pub use format::READABLE;
-pub use open::open_city;
+pub use open::{open_all, open_city};
 pub use recipe::{Export, Half, Recipe, Source, Step, Target, VERSION, Within};
 pub use registry::{Registry, needs_city};
 pub use run::{Inputs, Made, Seconds, read_example, read_source};

@@ -26,6 +26,20 @@ pub fn open_city(path: &Path, options: &ImportOptions) -> Result<Imported, Error
     }
 }
 
+/// Opens a map, or the several GeoJSON files of one place: streets, parcels, buildings.
+pub fn open_all(paths: &[PathBuf], options: &ImportOptions) -> Result<Imported, Error> {
+    if let [path] = paths {
+        return open_city(path, options);
+    }
+    for path in paths {
+        if format_of(path)? != Format::GeoJson {
+            let message = "only GeoJSON files are read together; import the others one by one";
+            return Err(Error::Input(named(path, message)));
+        }
+    }
+    exurb_gis::read_geojson_many(paths, options).map_err(|e| Error::Input(e.to_string()))
+}
+
 /// The format of a file that is there.
 pub fn format_of(path: &Path) -> Result<Format, Error> {
     format::detect(path, &head(path)?).ok_or_else(|| {

@@ -49,6 +49,9 @@ pub struct Source {
     /// Any readable map or city, beside the recipe or in the current folder; or
     /// `builtin:NAME`, an example that comes with the program.
     pub file: PathBuf,
+    /// The word by which steps choose it; its name when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub id: Option<String>,
     /// Its name in the provenance of what is copied; the stem of the file when absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
@@ -95,7 +98,7 @@ pub struct Step {
     /// A random seed of its own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
-    /// Names of the examples it learns from; all of them when absent, the city as it is before
+    /// The examples it learns from, by id or name; all of them when absent, the city as it is before
     /// the step when the list is empty.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub examples: Option<Vec<String>>,
@@ -174,7 +177,13 @@ impl Source {
     /// The whole of a file, with weight 1.
     pub fn new(file: impl Into<PathBuf>) -> Self {
         let file = file.into();
-        Self { file, name: None, weight: 1.0, bbox: None, part: None, with_service: false }
+        let (id, name, bbox, part) = (None, None, None, None);
+        Self { file, id, name, weight: 1.0, bbox, part, with_service: false }
+    }
+
+    /// The word by which steps choose it: its id, else its name.
+    pub fn key(&self) -> String {
+        self.id.clone().unwrap_or_else(|| self.name())
     }
 
     /// Its name: the given one, else the stem of the file up to its first dot.

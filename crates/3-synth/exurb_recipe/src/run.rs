@@ -125,7 +125,7 @@ impl Recipe {
             None if self.city.is_none() => Vec::new(),
             Some(names) if !names.is_empty() => {
                 let named = self.examples.iter().zip(examples);
-                let chosen = named.filter(|(source, _)| names.contains(&source.name()));
+                let chosen = named.filter(|(source, _)| names.contains(&source.key()));
                 chosen.map(|(_, example)| example.clone()).collect()
             }
             _ => vec![itself(city)],

@@ -11,6 +11,7 @@ pub enum Format {
     GeoPackage,
     GeoJson,
     OsmXml,
+    OsmXmlGz,
     OsmPbf,
     Glb,
     Obj,
@@ -19,10 +20,11 @@ pub enum Format {
 }
 
 /// Every format: name for `--to`, endings, format. Longer endings first.
-const FORMATS: [(&str, &[&str], Format); 8] = [
+const FORMATS: [(&str, &[&str], Format); 9] = [
     ("gpkg", &[".gpkg"], Format::GeoPackage),
     ("geojson", &[".geojson", ".json"], Format::GeoJson),
     ("pbf", &[".osm.pbf", ".pbf"], Format::OsmPbf),
+    ("osm.gz", &[".osm.gz"], Format::OsmXmlGz),
     ("osm", &[".osm", ".osm.xml"], Format::OsmXml),
     ("glb", &[".glb"], Format::Glb),
     ("obj", &[".obj"], Format::Obj),
@@ -75,6 +77,7 @@ mod tests {
     fn endings_and_names_choose_the_format() {
         let of = |file: &str, to| Format::of(Path::new(file), to).map_err(|p| p.status);
         assert_eq!(of("a.b/City.OSM.PBF", None), Ok(Format::OsmPbf));
+        assert_eq!(of("city.osm.gz", None), Ok(Format::OsmXmlGz));
         assert_eq!(of("city.osm", None), Ok(Format::OsmXml));
         assert_eq!(of("city.dat", Some("glb")), Ok(Format::Glb));
         assert_eq!(of("city.dat", None), Err(2));

@@ -31,7 +31,7 @@ pub struct RunOptions {
 pub struct SeedOptions {
     /// Random seed: same inputs, parameters and seed, same city
     #[arg(long, value_name = "N", default_value_t = 1,
-          value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
+          allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     pub seed: u64,
     /// Read and check everything, print the recipe, write nothing
     #[arg(long)]

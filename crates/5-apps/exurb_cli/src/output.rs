@@ -77,6 +77,11 @@ fn write(
             .map_err(|e| pending.problem(&e.to_string()))?,
         Format::GeoJson => pending.stream(|out| exurb_gis::write_geojson(city, out))?,
         Format::OsmXml => pending.stream(|out| exurb_osm::write_xml(city, out))?,
+        Format::OsmXmlGz => pending.stream(|out| {
+            let mut packed = flate2::write::GzEncoder::new(out, flate2::Compression::default());
+            exurb_osm::write_xml(city, &mut packed)?;
+            packed.finish().map(|_| ())
+        })?,
         Format::OsmPbf => pending.stream(|out| exurb_osm::write_pbf(city, out))?,
         Format::Glb => {
             let glb = exurb_model3d::to_glb(city, &model);

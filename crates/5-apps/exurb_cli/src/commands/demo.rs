@@ -23,7 +23,7 @@ struct Options {
     style: String,
     /// Random seed: another number, another city
     #[arg(long, value_name = "N", default_value_t = 1,
-          value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
+          allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     seed: u64,
     #[command(flatten)]
     examples: ExampleOptions,

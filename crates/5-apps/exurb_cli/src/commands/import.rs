@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::{ArgMatches, Args, Command, FromArgMatches};
+use exurb_city::{City, Imported};
+use exurb_operation::Run;
 use exurb_recipe::{Export, Seconds, Source};
 
 use crate::options::{OutputOptions, PartOptions, RunOptions};
@@ -13,8 +15,10 @@ use crate::{job, summary};
 
 #[derive(Args)]
 struct Options {
-    /// Map to read: .osm, .osm.gz, .osm.bz2, .osm.pbf, Overpass JSON, GeoJSON or GeoPackage
-    input: PathBuf,
+    /// Map to read: .osm, .osm.gz, .osm.bz2, .osm.pbf, Overpass JSON, GeoJSON or GeoPackage;
+    /// several GeoJSON files make one city
+    #[arg(required = true, value_name = "INPUT")]
+    inputs: Vec<PathBuf>,
     #[command(flatten)]
     output: OutputOptions,
     #[command(flatten)]
@@ -32,18 +36,28 @@ pub fn command() -> Command {
 /// Runs it.
 pub fn run(matches: &ArgMatches) -> Result<(), Problem> {
     let options = Options::from_arg_matches(matches).map_err(|e| Problem::usage(e.to_string()))?;
-    let export = Export {
-        file: options.output.output.clone(),
-        to: options.output.to.clone(),
-        ..Export::default()
-    };
-    let source = options.part.apply(Source::new(&options.input));
+    let OutputOptions { output, to } = options.output.clone();
+    let export = Export { file: output.clone(), to, ..Export::default() };
     let (city, seconds) = job::work(&options.run, 1, |run| {
+        let outputs = Outputs::prepare(&[export], Path::new(""))?;
         let started = Instant::now();
-        let city = exurb_recipe::read_source(&source, Path::new(""), run)?;
+        let city = read(&options, run)?;
         let read = started.elapsed().as_secs_f64();
-        let write = Outputs::prepare(&[export], Path::new(""))?.write(&city, run)?;
+        let write = outputs.write(&city, run)?;
         Ok((city, Seconds { read, write, ..Seconds::default() }))
     })?;
-    summary::report(&city, None, seconds, &[&options.output.output], &options.run)
+    summary::report(&city, None, seconds, &[&output], &options.run)
+}
+
+fn read(options: &Options, run: &Run) -> Result<City, Problem> {
+    if let [input] = &options.inputs[..] {
+        let source = options.part.apply(Source::new(input));
+        return Ok(exurb_recipe::read_source(&source, Path::new(""), run)?);
+    }
+    run.phase("reading");
+    let taken = options.part.apply(Source::new("")).import_options();
+    let Imported { city, warnings } = exurb_recipe::open_all(&options.inputs, &taken)?;
+    warnings.into_iter().for_each(|warning| run.warn(warning));
+    run.check()?;
+    Ok(city)
 }

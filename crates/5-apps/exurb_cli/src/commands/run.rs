@@ -18,7 +18,7 @@ struct Options {
     #[arg(long, short, value_name = "DIR", default_value = ".")]
     output: PathBuf,
     /// Random seed instead of the recipe's
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     seed: Option<u64>,
     /// Read and check everything, print the recipe, write nothing
     #[arg(long)]

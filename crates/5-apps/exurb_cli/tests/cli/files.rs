@@ -43,12 +43,12 @@ fn every_format_is_written_and_the_readable_ones_are_read_again() {
     };
     let expected = km("c.gpkg");
     assert!(expected > 1.0);
-    for ending in ["gpkg", "geojson", "osm", "osm.pbf", "glb", "obj", "svg", "png"] {
+    for ending in ["gpkg", "geojson", "osm", "osm.gz", "osm.pbf", "glb", "obj", "svg", "png"] {
         let name = format!("out.{ending}");
         exurb(folder.path(), &["export", "c.gpkg", "-o", &name]).ends(0);
         let size = fs::metadata(folder.path().join(&name)).unwrap().len();
         assert!(size > 100, "{name} has {size} bytes");
-        if ["gpkg", "geojson", "osm", "osm.pbf"].contains(&ending) {
+        if ["gpkg", "geojson", "osm", "osm.gz", "osm.pbf"].contains(&ending) {
             let again = km(&name);
             assert!((again - expected).abs() < 0.1 * expected, "{name}: {again} of {expected} km");
         }
@@ -91,4 +91,23 @@ fn pictures_are_drawn_in_every_style() {
     exurb(folder.path(), &["render", "c.gpkg", "-o", "v.svg", "--style", "baroque"])
         .ends(2)
         .says("dark");
+}
+
+#[test]
+fn the_geojson_files_of_one_place_are_imported_together() {
+    let folder = tempdir().unwrap();
+    let layers = ["streets", "parcels", "buildings"];
+    for layer in layers {
+        let file = format!("{layer}.geojson");
+        let args = ["export", "builtin:prague", "-o", &file, "--layer", layer];
+        exurb(folder.path(), &args).ends(0);
+    }
+    let files = layers.map(|layer| format!("{layer}.geojson"));
+    let args = ["import", &files[0], &files[1], &files[2], "-o", "c.gpkg", "--json"];
+    let report = exurb(folder.path(), &args).ends(0).json();
+    let whole = exurb(folder.path(), &["info", "builtin:prague", "--json"]).ends(0).json();
+    for layer in layers {
+        assert_eq!(report[layer]["count"], whole[layer]["count"], "{layer}");
+    }
+    exurb(folder.path(), &["import", &files[0], "c.gpkg", "-o", "d.gpkg"]).ends(2).says("c.gpkg");
 }
