@@ -8,6 +8,7 @@
 //! | `bench [STAGE]` | measures against named yardsticks |
 //! | `fuzz [TARGET] [SECONDS]` | feeds the readers with broken files |
 //! | `arrows` | crates use only what stands below them |
+//! | `maps` | grows a city from every shared map and writes docs/maps.md |
 //! | `licences` | every dependency has a licence on the list |
 //!
 //! Exit status: 0 done, 1 the task failed, 2 wrong usage.
@@ -19,6 +20,7 @@ mod bench;
 mod check;
 mod fuzz;
 mod licences;
+mod maps;
 mod metadata;
 mod shell;
 mod test;
@@ -27,7 +29,7 @@ mod tools;
 use std::process::ExitCode;
 
 const USAGE: &str = "usage: cargo xtask check | test | bless | bench [STAGE] | \
-                     fuzz [TARGET] [SECONDS] | arrows | licences";
+                     fuzz [TARGET] [SECONDS] | maps | arrows | licences";
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
@@ -39,6 +41,7 @@ fn main() -> ExitCode {
         ["bench"] => bench::run(None),
         ["bench", stage] => bench::run(Some(stage)),
         ["fuzz", ref rest @ ..] => fuzz::run(rest),
+        ["maps"] => maps::run(),
         ["arrows"] => arrows::run(),
         ["licences"] => licences::run(),
         _ => {

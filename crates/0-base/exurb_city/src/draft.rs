@@ -5,6 +5,7 @@ use std::sync::Arc;
 use exurb_geom::{Bounds, Frame, GridPoint, LonLat, Polygon, overlay};
 use exurb_graph::NodeId;
 
+use crate::hierarchy::{Hierarchy, assign_levels};
 use crate::street_graph::{self, Derive};
 use crate::{Area, Building, City, Feature, Metadata, Origin, Parcel, Provenance, Role};
 use crate::{StreetGraph, StreetMap, completeness, cut, densest_square, placing};
@@ -101,6 +102,7 @@ impl Draft {
         let derive = Derive { with_other: options.with_other, area: Some(target.clone()) };
         let mut streets = street_graph::derive(&self.streets, &derive);
         mark_broken_ends(&mut streets, self.broken_ends);
+        assign_levels(&mut streets, &Hierarchy::default());
 
         let mut blocks = crate::block::derive(&streets);
         for block in &mut blocks {

@@ -40,6 +40,7 @@ mod tests;
 
 use std::sync::Arc;
 
+use exurb_city::hierarchy::{Hierarchy, assign_levels};
 use exurb_city::street_graph::{self, StreetGraph};
 use exurb_city::{City, Edit, block};
 use exurb_geom::{GridPoint, LonLat, Polygon, Vec2};
@@ -96,7 +97,8 @@ impl Operation for Grow {
         let starts = starts(city, target, learned, params).map_err(failure)?;
         let input = Input { target, examples: &learned.vocabularies, starts };
         let streets = synthesize(&input, params, run).map_err(failure)?;
-        let streets = lawful(city, target, streets, run);
+        let mut streets = lawful(city, target, streets, run);
+        assign_levels(&mut streets, &Hierarchy::default());
         run.phase("blocks");
         let blocks = block::derive(&streets);
         let gates = learned.vocabularies.first().map(|v| v.gates.clone());
