@@ -79,7 +79,7 @@ fn fuzz(name: &str, seconds: u32) -> Outcome {
     fuzzer.arg(built.join(triple).join("release").join(name));
     fuzzer.arg(&found).arg(root().join("fuzz/corpus").join(name));
     fuzzer.args([format!("-max_total_time={seconds}"), "-rss_limit_mb=2048".into()]);
-    fuzzer.args(["-timeout=10", "-max_len=65536", "-print_final_stats=1"]);
+    fuzzer.args(["-timeout=10", "-max_len=65536", "-print_final_stats=1", "-verbosity=0"]);
     fuzzer.arg(format!("-artifact_prefix={}/", Path::new(&crashes).display()));
     shell::run(&mut fuzzer).map_err(|e| format!("{e}: see {}", crashes.display()))
 }
