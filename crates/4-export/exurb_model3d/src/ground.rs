@@ -1,12 +1,14 @@
 //! Ground, water, land use and blocks: surfaces that share no place, so that no viewer has to
 //! decide which of two lies on top.
 
-use exurb_city::{Area, Block, BlockClass};
+use std::collections::BTreeMap;
+
+use exurb_city::{Area, Block, BlockClass, Parcel, area};
 use exurb_geom::{GridPoint, Polygon, SegmentIndex, overlay};
 use rayon::prelude::*;
 
 use crate::mesh::Facing;
-use crate::palette::{self, BANK, GROUND, KERB, PAVEMENT, WATER, linear, scaled, share};
+use crate::palette::{self, BANK, GROUND, KERB, Linear, PAVEMENT, WATER, linear, scaled, share};
 use crate::scene::{Layer, Material, Part, Site};
 
 /// Heights in metres. Carriageways lie at 0, kerbs are 12 cm high; open ground lies a little lower
@@ -22,8 +24,14 @@ pub fn layers(site: &Site) -> Vec<Layer> {
     let water: Vec<Area> = clipped(&city.water, &page);
     let land_use = clipped(&city.land_use, &page);
     let wet = Wet::of(&water);
-    let blocks: Vec<Part> =
-        city.blocks.par_iter().map(|block| block_part(site, block, &land_use, &wet)).collect();
+    let mut lots: BTreeMap<u32, Vec<&Parcel>> = BTreeMap::new();
+    city.parcels.iter().for_each(|lot| lots.entry(lot.block).or_default().push(lot));
+    let of_block = |block: &Block| lots.get(&block.id).map_or(&[][..], |lots| lots);
+    let blocks: Vec<Part> = city
+        .blocks
+        .par_iter()
+        .map(|block| block_part(site, block, of_block(block), &land_use, &wet))
+        .collect();
     let mut all_blocks = Part::new(Material::Plain);
     blocks.iter().for_each(|part| all_blocks.append(part));
     vec![
@@ -139,8 +147,8 @@ fn land_use_layer(site: &Site, land_use: &[Area], wet: &Wet) -> Layer {
     Layer { name: "land_use", parts: vec![part] }
 }
 
-/// Kerb, pavement, and behind it the ground by land use.
-fn block_part(site: &Site, block: &Block, land_use: &[Area], wet: &Wet) -> Part {
+/// Kerb, pavement, and behind it the ground by land use and lot.
+fn block_part(site: &Site, block: &Block, lots: &[&Parcel], land_use: &[Area], wet: &Wet) -> Part {
     let mut part = Part::new(Material::Plain);
     part.begin(block.id);
     for piece in wet.dry(&block.polygon) {
@@ -157,10 +165,11 @@ fn block_part(site: &Site, block: &Block, land_use: &[Area], wet: &Wet) -> Part 
         top(&block.polygon, linear(PAVEMENT));
         return part;
     }
-    let mut rest = block.buildable();
-    for ring in overlay::difference(&block.polygon, &rest) {
+    let inner = block.buildable();
+    for ring in overlay::difference(&block.polygon, &inner) {
         top(&ring, linear(PAVEMENT));
     }
+    let mut rest = grounds(block, lots, inner);
     // The smallest area that covers a place decides: later in the list.
     for area in land_use.iter().rev() {
         if rest.is_empty() || !area.polygon.bounds().intersects(block.polygon.bounds()) {
@@ -168,16 +177,39 @@ fn block_part(site: &Site, block: &Block, land_use: &[Area], wet: &Wet) -> Part 
         }
         let color = linear(palette::ground_of(Some(&area.class)));
         let mut left = Vec::new();
-        for piece in rest {
+        for (piece, own) in rest {
             for covered in overlay::intersection(&piece, &area.polygon) {
                 top(&covered, color);
             }
-            left.extend(overlay::difference(&piece, [&area.polygon]));
+            let uncovered = overlay::difference(&piece, [&area.polygon]);
+            left.extend(uncovered.into_iter().map(|piece| (piece, own)));
         }
         rest = left;
     }
-    let tone = 0.92 + 0.12 * share(block.id, 7);
-    let color = scaled(linear(palette::ground_of(block.land_use.as_deref())), tone);
-    rest.iter().for_each(|piece| top(piece, color));
+    rest.iter().for_each(|(piece, color)| top(piece, *color));
     part
+}
+
+/// The ground behind the pavement: lots in tones of their own where they fill it, else one tone.
+fn grounds(block: &Block, lots: &[&Parcel], inner: Vec<Polygon>) -> Vec<(Polygon, Linear)> {
+    let tone = |id: u32, spread: f64| 1.0 - spread / 2.0 + spread * share(id, 7);
+    let known = block.land_use.as_deref().filter(|class| area::is_open(class));
+    let area_m2 = |polygons: &mut dyn Iterator<Item = &Polygon>| -> f64 {
+        polygons.map(Polygon::area_m2).sum()
+    };
+    let inner_m2 = area_m2(&mut inner.iter());
+    let lots_m2 = area_m2(&mut lots.iter().map(|lot| &lot.polygon));
+    if known.is_none() && (lots_m2 - inner_m2).abs() < 0.02 * inner_m2 {
+        let color = |lot: &Parcel| {
+            let of_use = lot.land_use.as_deref().filter(|class| area::is_open(class));
+            let base = match of_use {
+                Some(class) => linear(palette::ground_of(Some(class))),
+                None => palette::pick(&palette::LOTS, lot.id, 8),
+            };
+            scaled(base, tone(lot.id, 0.16))
+        };
+        return lots.iter().map(|lot| (lot.polygon.clone(), color(lot))).collect();
+    }
+    let color = linear(palette::ground_of(block.land_use.as_deref()));
+    inner.into_iter().map(|piece| (piece, scaled(color, tone(block.id, 0.12)))).collect()
 }

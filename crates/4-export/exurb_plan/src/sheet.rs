@@ -38,8 +38,8 @@ pub struct StreetPaint {
 
 const LIGHT: Sheet = Sheet {
     style: Style::Default,
-    paper: rgb(0xece7dc),
-    block: rgb(0xf2eee5),
+    paper: rgb(0xece8de),
+    block: rgb(0xf0ece3),
     block_line: rgb(0xdcd5c6),
     parcel_line: rgb(0xdfd7c8),
     water: rgb(0xa8cfe4),
@@ -123,7 +123,7 @@ impl Sheet {
             (Style::Default, Class::Pedestrian) => paint(0xf0e7e3, 0xcdbdb4, 1.2),
             (Style::Default, Class::LivingStreet) => paint(0xfbf9f5, 0xcbc3b5, 1.2),
             (Style::Default, Class::Service) => paint(0xfdfcfa, 0xd0c8b9, 0.8),
-            (Style::Default, _) => paint(0xffffff, 0xbfb5a4, 1.4),
+            (Style::Default, _) => paint(0xffffff, 0xb5aa98, 1.6),
             (Style::Dark, Class::Motorway | Class::Trunk) => paint(0xd98b4a, 0x14181d, 3.4),
             (Style::Dark, Class::MotorwayLink | Class::TrunkLink) => paint(0xb87842, 0x14181d, 2.0),
             (Style::Dark, Class::Primary | Class::PrimaryLink) => paint(0xc9a35a, 0x14181d, 2.8),

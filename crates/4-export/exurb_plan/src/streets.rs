@@ -58,7 +58,7 @@ fn ribbon(map: &Map, line: &[GridPoint], street: &Street) -> Option<Ribbon> {
         Some(color) => (color, color.shade()),
         None => (map.base(paint.fill), map.base(paint.casing)),
     };
-    let edge_px = (width_px * 0.16).clamp(0.45 * scale, 1.1 * scale);
+    let edge_px = (width_px * 0.16).clamp(0.5 * scale, 1.1 * scale);
     let mut ribbon = Ribbon {
         points,
         class: street.class,

@@ -48,7 +48,7 @@ impl Camera {
         // Half of what the frame shows across, at the middle: so much that hardly anything but city
         // is in it.
         let size = bounds.size();
-        let half_m = (size.x * size.y).sqrt() * 0.35 / view.zoom.clamp(0.1, 100.0);
+        let half_m = (size.x * size.y).sqrt() * 0.335 / view.zoom.clamp(0.1, 100.0);
         let distance_m = (half_m / tan_x.max(tan_y)).max(20.0);
         // A little in front of the middle: what is near takes more of the picture.
         let ahead = azimuth * (half_m * 0.08);

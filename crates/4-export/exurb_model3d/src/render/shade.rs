@@ -13,8 +13,8 @@ use crate::scene::Material;
 const SUN: Vec3 = Vec3::new(2.75, 2.5, 2.1);
 const SKY: Vec3 = Vec3::new(0.62, 0.74, 0.95);
 const BOUNCE: Vec3 = Vec3::new(0.36, 0.34, 0.3);
-const ZENITH: Vec3 = Vec3::new(0.2, 0.4, 0.78);
-const HAZE: Vec3 = Vec3::new(0.72, 0.8, 0.89);
+const ZENITH: Vec3 = Vec3::new(0.34, 0.62, 1.15);
+const HAZE: Vec3 = Vec3::new(1.2, 1.36, 1.54);
 
 /// All that decides on colours.
 pub struct Shader<'a> {
@@ -40,7 +40,7 @@ impl<'a> Shader<'a> {
             windows: Texture::of(Material::Windows),
             glass: Texture::of(Material::Glass),
             ground: Vec3::new(r, g, b),
-            haze_m: (to_middle_m + size_m) * 1.6,
+            haze_m: (to_middle_m + size_m) * 1.8,
         }
     }
 
@@ -88,15 +88,8 @@ impl<'a> Shader<'a> {
     /// Mirrors the sky, the more the flatter one looks.
     fn water(&self, albedo: Vec3, at: Vec3, ray: Vec3) -> Vec3 {
         let view = ray.normalize();
-        // Ripples: two crossed rows of waves bend the mirror a little.
-        let wave = |x: f32, z: f32| {
-            let phase = (x * 0.11 + z * 0.07).rem_euclid(1.0) - 0.5;
-            1.0 - 4.0 * phase * phase
-        };
-        let ripple = (wave(at.x, at.z) - wave(at.z * 1.7, -at.x * 1.3)) * 0.01;
-        let normal = Vec3::new(ripple, 1.0, -ripple).normalize();
-        let mirrored = view - normal * (2.0 * view.dot(normal));
-        let grazing = 1.0 - normal.dot(-view).clamp(0.0, 1.0);
+        let mirrored = Vec3::new(view.x, -view.y, view.z);
+        let grazing = 1.0 - (-view.y).clamp(0.0, 1.0);
         let share = 0.06 + 0.74 * grazing * grazing * grazing;
         let deep = albedo * (SUN * 0.3 + SKY) * (0.35 + 0.65 * self.light.sun_at(at, Vec3::Y));
         deep.lerp(sky(mirrored), share)
