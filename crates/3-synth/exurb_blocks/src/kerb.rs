@@ -2,7 +2,18 @@
 
 use exurb_geom::{GridPoint, Polygon, SegmentGrid, Vec2, polyline};
 
-use crate::ring::{Place, Ring};
+use crate::ring::Ring;
+
+/// The place on a ring nearest to a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// Position along the ring in metres.
+    pub at_m: f64,
+    /// Distance to it in metres.
+    pub distance_m: f64,
+    /// Unit direction of the ring there.
+    pub direction: Vec2,
+}
 
 /// The rings of a block's outline, the outer one first.
 #[derive(Clone, Debug)]
@@ -91,8 +102,7 @@ mod tests {
         for i in 0..200 {
             let k = f64::from(i);
             let p = Vec2::new((k * 37.7) % 900.0 - 450.0, (k * 61.3) % 900.0 - 450.0);
-            let walked = kerb.rings.iter().map(|r| r.nearest(p).distance_m);
-            let walked = walked.fold(f64::INFINITY, f64::min);
+            let walked = block.boundary_distance_m(p);
             let (r, place) = kerb.nearest(p);
             assert!((place.distance_m - walked).abs() < 1e-9, "{p}");
             assert!(kerb.rings[r].point_at(place.at_m).distance(p) - walked < 1e-6, "{p}");

@@ -14,17 +14,6 @@ pub struct Ring {
     starts_m: Vec<f64>,
 }
 
-/// The place on a ring nearest to a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
-    /// Position along the ring in metres.
-    pub at_m: f64,
-    /// Distance to it in metres.
-    pub distance_m: f64,
-    /// Unit direction of the ring there.
-    pub direction: Vec2,
-}
-
 /// A stretch of a ring between two corners.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Side {
@@ -73,13 +62,6 @@ impl Ring {
         let step = self.starts_m[i + 1] - self.starts_m[i];
         let t = if step > 0.0 { ((at - self.starts_m[i]) / step).clamp(0.0, 1.0) } else { 0.0 };
         self.points[i].lerp(self.points[i + 1], t)
-    }
-
-    /// The place nearest to `p`.
-    pub fn nearest(&self, p: Vec2) -> Place {
-        let (q, at_m, i) = polyline::nearest(&self.points, p);
-        let direction = (self.points[i + 1] - self.points[i]).normalize_or_zero();
-        Place { at_m, distance_m: q.distance(p), direction }
     }
 
     /// The sides between corners; one from 0 around when there is no corner.
@@ -183,7 +165,5 @@ mod tests {
     #[test]
     fn positions_run_over_the_start() {
         assert_eq!(ring(&RECTANGLE).point_at(-10.0), Vec2::new(0.0, 10.0));
-        let place = ring(&RECTANGLE).nearest(Vec2::new(30.0, 5.0));
-        assert_eq!((place.at_m, place.distance_m, place.direction), (30.0, 5.0, Vec2::X));
     }
 }

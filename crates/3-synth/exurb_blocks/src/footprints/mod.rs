@@ -186,6 +186,8 @@ impl<'a> Site<'a> {
             |k: usize| n > 1 && lots[k].1.ends.1.distance(lots[(k + 1) % n].1.ends.0) < 0.5;
         let walls: Vec<bool> =
             choose::walls(samples, rng).take(n).enumerate().map(|(k, w)| w && joined(k)).collect();
+        let open = self.open.near(&block.polygon);
+        let is_free = |p: &Polygon| !open.forbids(p) && !self.is_crossed(p);
         let mut out = Vec::new();
         for (k, (parcel, lot)) in lots.iter().enumerate() {
             let empty = rng.random::<f64>() < style.empty_share;
@@ -194,7 +196,7 @@ impl<'a> Site<'a> {
             let chosen = choose::choose(samples, lot, depth, walls, rng);
             let Some(sample) = chosen.filter(|_| !empty) else { continue };
             let wish = style.wish(sample, walls, block.pavement_m, growth);
-            let Some(polygon) = place(lot, &wish).filter(|p| self.is_free(p)) else { continue };
+            let Some(polygon) = place(lot, &wish).filter(is_free) else { continue };
             let mut building = Building::new(0, polygon, parcel.provenance.clone());
             (building.block, building.parcel) = (block.id, parcel.id);
             out.push(building);
@@ -202,20 +204,16 @@ impl<'a> Site<'a> {
         out
     }
 
-    /// Clear of water, open land and bridges?
-    fn is_free(&self, polygon: &Polygon) -> bool {
-        let wet = polygon.exterior().iter().any(|p| self.open.is_water(*p));
-        let crossed = || {
-            let mut hit = false;
-            self.over.visit(polygon.bounds(), |e| {
-                let (c, d) = (GridPoint::round(e.a), GridPoint::round(e.b));
-                hit |= polygon.contains(c)
-                    || polygon.segments().any(|(a, b)| grid::intersects(a, b, c, d));
-                !hit
-            });
-            hit
-        };
-        !wet && !self.open.holds(GridPoint::round(polygon.interior_point())) && !crossed()
+    /// Does a bridge or the like pass over the footprint?
+    fn is_crossed(&self, polygon: &Polygon) -> bool {
+        let mut hit = false;
+        self.over.visit(polygon.bounds(), |e| {
+            let (c, d) = (GridPoint::round(e.a), GridPoint::round(e.b));
+            hit |= polygon.contains(c)
+                || polygon.segments().any(|(a, b)| grid::intersects(a, b, c, d));
+            !hit
+        });
+        hit
     }
 }
 

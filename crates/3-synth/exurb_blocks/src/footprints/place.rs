@@ -1,6 +1,6 @@
 //! A sample's building put on a lot.
 
-use exurb_geom::{GridPoint, Polygon, Vec2, grid, polyline, trig};
+use exurb_geom::{GridPoint, OrientedBox, Polygon, Vec2, grid, polyline, trig};
 
 use super::lot::Lot;
 use super::row;
@@ -46,7 +46,9 @@ pub fn is_sound(polygon: &Polygon, wish: &Wish<'_>) -> bool {
     let sample = wish.sample;
     let perimeter: f64 = sample.outline.iter().map(|ring| closed_length(ring)).sum();
     let sample_width = 2.0 * sample.area_m2 / perimeter.max(1.0);
-    polygon.area_m2() >= wish.min_area_m2
+    let longest = sample.size_m.max_element() * wish.growth.max(1.0).sqrt() * 2.0 + 10.0;
+    OrientedBox::of(polygon.exterior()).is_some_and(|b| b.long_m() <= longest)
+        && polygon.area_m2() >= wish.min_area_m2
         && polygon.mean_width_m() >= (sample_width * 0.5).max(LEAST_SIDE_M * 0.6)
         && polygon.area_m2() <= sample.area_m2 * MOST_GROWTH * wish.growth.max(1.0)
         && polygon.is_valid()

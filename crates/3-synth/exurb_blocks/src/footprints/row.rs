@@ -214,5 +214,8 @@ fn without_spikes(polygon: Polygon) -> Option<Polygon> {
     let opened = offset::inset(&core, -HALF_STRIP_M).into_iter().next()?;
     // Growing back may round a corner over the border by a little.
     let kept = overlay::intersection(&opened, &polygon).into_iter().next()?;
-    Some(if kept.area_m2() > 0.995 * polygon.area_m2() { polygon } else { kept })
+    // A hair along a border has length, but no area.
+    let whole = kept.area_m2() > 0.995 * polygon.area_m2()
+        && kept.perimeter_m() > polygon.perimeter_m() - 0.5;
+    Some(if whole { polygon } else { kept })
 }

@@ -30,6 +30,8 @@ pub struct ExampleBlock {
     pub empty_share: Option<f64>,
     /// Footprints by area of the block.
     pub coverage: f64,
+    /// Usual distance of its buildings from the kerb in metres; `None` with fewer than three.
+    pub setback_m: Option<f64>,
     /// Buildings along its streets, in order along the kerb.
     pub buildings: Vec<BuildingSample>,
 }
@@ -90,6 +92,7 @@ pub fn measure(
         fronted_share: 0.0,
         empty_share: None,
         coverage,
+        setback_m: (buildings.len() >= 3).then(|| median(buildings.iter().map(|b| b.setback_m))),
         buildings: Vec::new(),
     };
     let lots = lots(city, contents, &kerb);

@@ -19,7 +19,7 @@ pub use block_features::{Features, Surroundings};
 pub use building_sample::BuildingSample;
 pub use donor::Donors;
 pub use example_block::{ExampleBlock, median};
-pub use open_land::OpenLand;
+pub use open_land::{OpenLand, OpenNearby};
 
 use exurb_city::{City, block};
 use exurb_operation::{Example, Failure, Run};

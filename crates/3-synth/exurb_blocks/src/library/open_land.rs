@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use exurb_city::{City, area};
-use exurb_geom::{BoxGrid, GridPoint, Polygon};
+use exurb_geom::{Bounds, BoxGrid, GridPoint, Polygon, grid};
 
 /// Land that is kept free of buildings, and water.
 #[derive(Clone, Debug)]
@@ -51,19 +51,52 @@ impl OpenLand {
         (open > 0).then(|| (most.clone(), open as f64 / points.len() as f64))
     }
 
-    /// Is the point on water?
-    pub fn is_water(&self, p: GridPoint) -> bool {
+    /// What of it reaches the box around `ground`.
+    pub fn near(&self, ground: &Polygon) -> OpenNearby<'_> {
         let mut near = Vec::new();
-        self.boxes.meeting(p, p, &mut near);
-        let areas = near.iter().map(|n| &self.areas[*n as usize]);
-        areas.filter(|(_, class)| &**class == "water").any(|(polygon, _)| polygon.contains(p))
+        self.boxes.meeting_polygon(ground, &mut near);
+        let bounds = ground.bounds();
+        let meets = |(a, b): &(GridPoint, GridPoint)| {
+            let (a, b) = (a.to_m(), b.to_m());
+            Bounds { min: a.min(b), max: a.max(b) }.intersects(bounds)
+        };
+        let areas = near.iter().map(|n| &self.areas[*n as usize]).filter_map(|(polygon, class)| {
+            let border: Vec<_> = polygon.segments().filter(meets).collect();
+            let reaches = !border.is_empty() || polygon.contains(GridPoint::round(bounds.center()));
+            reaches.then_some(Reaching { polygon, is_water: &**class == "water", border })
+        });
+        OpenNearby { areas: areas.collect() }
     }
+}
 
-    /// Is the point on open land or water?
-    pub fn holds(&self, p: GridPoint) -> bool {
-        let mut near = Vec::new();
-        self.boxes.meeting(p, p, &mut near);
-        near.iter().any(|n| self.areas[*n as usize].0.contains(p))
+/// Open land and water around one block.
+pub struct OpenNearby<'a> {
+    areas: Vec<Reaching<'a>>,
+}
+
+struct Reaching<'a> {
+    polygon: &'a Polygon,
+    is_water: bool,
+    /// Its border around the block.
+    border: Vec<(GridPoint, GridPoint)>,
+}
+
+impl OpenNearby<'_> {
+    /// Does `footprint` reach into water, or does its middle lie on open land?
+    pub fn forbids(&self, footprint: &Polygon) -> bool {
+        if self.areas.is_empty() {
+            return false;
+        }
+        let middle = GridPoint::round(footprint.interior_point());
+        let bounds = footprint.bounds();
+        let crosses = |&(c, d): &(GridPoint, GridPoint)| {
+            let (low, high) = (c.to_m().min(d.to_m()), c.to_m().max(d.to_m()));
+            Bounds { min: low, max: high }.intersects(bounds)
+                && footprint.segments().any(|(a, b)| grid::intersects(a, b, c, d))
+        };
+        self.areas.iter().any(|area| {
+            (area.is_water && area.border.iter().any(crosses)) || area.polygon.contains(middle)
+        })
     }
 }
 

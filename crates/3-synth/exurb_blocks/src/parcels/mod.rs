@@ -29,7 +29,7 @@ mod tiling;
 use std::sync::Arc;
 
 use exurb_city::{Area, Block, BlockClass, City, Edit, Origin, Parcel, Provenance, block};
-use exurb_geom::GridPoint;
+use exurb_geom::{GridPoint, offset};
 use exurb_operation::{Card, Example, Failure, Operation, Run, Scope, rng};
 use rayon::prelude::*;
 
@@ -73,7 +73,7 @@ impl Operation for Parcels {
         let failed =
             |e: Error| Failure::City { operation: Self::CARD.name(), message: e.to_string() };
         params.validate().map_err(failed)?;
-        let mut blocks = match city.blocks.is_empty() {
+        let blocks = match city.blocks.is_empty() {
             true => block::derive(&city.streets),
             false => city.blocks.to_vec(),
         };
@@ -81,9 +81,6 @@ impl Operation for Parcels {
             return Err(failed(Error::NoBlocks));
         }
         let scoped = Scoped::of(city, &blocks, scope);
-        for block in blocks.iter_mut().filter(|b| scoped.holds(b.id)) {
-            block.pavement_m = params.pavement;
-        }
         let open = OpenLand::of(city);
         let donors = learned.donors(&blocks, run.seed());
         let cut: Vec<Result<Option<CutBlock>, Failure>> = blocks
@@ -105,11 +102,14 @@ struct CutBlock {
     land_use: Option<Arc<str>>,
     /// Use of the land that the rows leave.
     rest_use: Option<Arc<str>>,
+    pavement_m: f64,
     /// Is the open land new, and to be written as an area?
     is_new_area: bool,
     provenance: Provenance,
 }
 
+/// Narrowest pavement taken over from an example, in metres.
+const LEAST_PAVEMENT_M: f64 = 0.5;
 /// From this share of given open land on, a block stays open.
 const GIVEN_OPEN_SHARE: f64 = 0.5;
 
@@ -130,18 +130,22 @@ fn cut_block(
     };
     let given = open.share(&block.polygon).filter(|(_, s)| *s >= GIVEN_OPEN_SHARE);
     let drawn = donor.and_then(|d| d.open.clone()).filter(|_| params.open_land);
-    let ground = block.buildable();
+    // Where the example's houses stand at the kerb, the pavement is as narrow.
+    let setback_m = donor.and_then(|d| d.setback_m).unwrap_or(params.pavement);
+    let pavement_m = params.pavement.min(setback_m.max(LEAST_PAVEMENT_M));
+    let ground = offset::inset(&block.polygon, pavement_m);
     if let Some(land_use) = given.as_ref().map(|(class, _)| class.clone()).or(drawn) {
         let lots = ground.into_iter().map(whole_lot).collect();
         let (land_use, is_new_area) = (Some(land_use), given.is_none());
-        return CutBlock { lots, land_use, rest_use: None, is_new_area, provenance };
+        return CutBlock { lots, land_use, rest_use: None, pavement_m, is_new_area, provenance };
     }
     let input = learn::input(&donors, block.polygon.area_m2());
     let key = rng::place_key(GridPoint::round(block.polygon.centroid()));
     let mut rng = run.stream(key);
     let lots = ground.iter().flat_map(|g| synthesize(g, &input, params, &mut rng)).collect();
     let rest_use = donors.iter().find_map(|d| d.open.clone()).unwrap_or_else(|| "grass".into());
-    CutBlock { lots, land_use: None, rest_use: Some(rest_use), is_new_area: true, provenance }
+    let (land_use, rest_use) = (None, Some(rest_use));
+    CutBlock { lots, land_use, rest_use, pavement_m, is_new_area: true, provenance }
 }
 
 fn whole_lot(polygon: exurb_geom::Polygon) -> Lot {
@@ -163,6 +167,7 @@ fn written(
     let mut next_area = land_use.iter().map(|a| a.id).max().unwrap_or(0) + 1;
     for (block, cut) in blocks.iter_mut().zip(cut) {
         let Some(cut) = cut else { continue };
+        block.pavement_m = cut.pavement_m;
         block.land_use.clone_from(&cut.land_use);
         block.provenance.clone_from(&cut.provenance);
         for lot in cut.lots {

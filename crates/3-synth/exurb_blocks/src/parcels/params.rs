@@ -18,7 +18,8 @@ pub struct Params {
     pub min_area: f64,
     /// Let blocks become parks, fields and the like as often as in the example.
     pub open_land: bool,
-    /// Width of the pavement between kerb and parcels.
+    /// Width of the pavement between kerb and parcels; narrower where the example's buildings stand
+    /// nearer to the kerb.
     #[schemars(range(min = 0.0, max = 20.0), extend("x-unit" = "m"))]
     pub pavement: f64,
 }
