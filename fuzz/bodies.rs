@@ -7,8 +7,11 @@ pub use exurb_osm::fuzz::{overpass, pbf, xml};
 
 use exurb_recipe::{Recipe, Registry};
 
+/// What a fuzzer feeds with bytes.
+pub type Body = fn(&[u8]);
+
 /// Every body by the name of its target.
-pub const BODIES: [(&str, fn(&[u8])); 7] = [
+pub const BODIES: [(&str, Body); 7] = [
     ("geojson", geojson),
     ("geopackage", geopackage),
     ("overpass", overpass),

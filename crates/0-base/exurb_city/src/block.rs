@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use exurb_geom::{Bounds, GridPoint, Polygon, Roadside, SegmentIndex, grid, offset, overlay};
-use exurb_graph::{EdgeId, Face, FaceId, Faces};
+use exurb_geom::{Polygon, Roadside, SegmentGrid, Vec2, grid, offset, overlay};
+use exurb_graph::{Dart, EdgeId, Face, FaceId, Faces};
 use rayon::prelude::*;
 
 use crate::{Provenance, StreetGraph};
@@ -58,27 +58,26 @@ impl Block {
 /// (bridges over streets).
 pub fn bounding_edges(graph: &StreetGraph) -> Vec<bool> {
     let mut bounds = vec![false; graph.edge_bound()];
-    let mut index = SegmentIndex::new(50.0);
+    let (mut raised, mut segments) = (Vec::new(), Vec::new());
     for (id, edge) in graph.edges() {
-        bounds[id.index()] = !edge.data.tunnel;
-        if edge.data.crossing_level() == 0 {
-            index.insert_line(id.0, &edge.line_m());
+        let level = edge.data.crossing_level();
+        bounds[id.index()] = !edge.data.tunnel && level >= 0;
+        if level > 0 {
+            raised.extend(std::iter::repeat_n(id, edge.line().len() - 1));
+            segments.extend(edge.line().windows(2).map(|w| (w[0], w[1])));
         }
     }
-    for (id, edge) in graph.edges().filter(|(_, e)| e.data.crossing_level() != 0) {
-        let line = edge.line();
-        let crosses = line.windows(2).any(|w| {
-            let (a, b) = (w[0].to_m(), w[1].to_m());
-            let mut hit = false;
-            index.visit(Bounds { min: a.min(b), max: a.max(b) }, |e| {
-                hit |=
-                    grid::cross_properly(w[0], w[1], GridPoint::round(e.a), GridPoint::round(e.b));
-                !hit
-            });
-            hit
-        });
-        if crosses || edge.data.crossing_level() < 0 {
-            bounds[id.index()] = false;
+    let grid = SegmentGrid::new(segments);
+    let mut near = Vec::new();
+    for (_, edge) in graph.edges().filter(|(_, e)| e.data.crossing_level() == 0) {
+        for w in edge.line().windows(2) {
+            grid.near(w[0], w[1], 0, &mut near);
+            for i in &near {
+                let (a, b) = grid.segment(*i);
+                if grid::cross_properly(w[0], w[1], a, b) {
+                    bounds[raised[*i as usize].index()] = false;
+                }
+            }
         }
     }
     bounds
@@ -94,9 +93,11 @@ pub fn faces(graph: &StreetGraph) -> Faces {
 /// Runs on rayon's current pool; the result does not depend on the number of threads.
 pub fn derive(graph: &StreetGraph) -> Vec<Block> {
     let faces = faces(graph);
-    let per_face: Vec<Vec<Block>> =
-        faces.list.par_iter().map(|face| blocks_of_face(graph, face)).collect();
-    let mut blocks: Vec<Block> = per_face.into_iter().flatten().collect();
+    // In runs of faces, so that few lists are joined.
+    let runs = faces.list.par_chunks(64).map(|faces| {
+        faces.iter().flat_map(|face| blocks_of_face(graph, face)).collect::<Vec<Block>>()
+    });
+    let mut blocks: Vec<Block> = runs.collect::<Vec<_>>().into_iter().flatten().collect();
     for (block, id) in blocks.iter_mut().zip(1..) {
         block.id = id;
     }
@@ -141,20 +142,7 @@ fn carriageways(graph: &StreetGraph, face: &Face) -> Roadside {
     let half_width_m = |id: EdgeId| graph.edge(id).data.width_m() / 2.0;
     let mut out = Roadside::default();
     for cycle in std::iter::once(&face.outline).chain(&face.islands) {
-        for (i, dart) in cycle.iter().enumerate() {
-            let line = graph.dart_line_m(*dart);
-            let next = cycle[(i + 1) % cycle.len()];
-            let (width_m, next_m) = (half_width_m(dart.edge()), half_width_m(next.edge()));
-            out.left_of(&line, width_m);
-            let (before, at) = (line[line.len() - 2], line[line.len() - 1]);
-            if width_m == next_m {
-                let after = graph.dart_line_m(next)[1];
-                out.bend(at, at - before, after - at, width_m);
-            } else {
-                // The end of the wider street sticks out beside the narrower one.
-                out.disc(at, width_m.max(next_m));
-            }
-        }
+        along_cycle(graph, cycle, &half_width_m, &mut out);
     }
     for id in &face.inner {
         let (mut line, width_m) = (graph.edge(*id).line_m(), half_width_m(*id));
@@ -167,10 +155,38 @@ fn carriageways(graph: &StreetGraph, face: &Face) -> Roadside {
     out
 }
 
+/// The ground left of a closed walk, streets of one width in one go.
+fn along_cycle(
+    graph: &StreetGraph,
+    cycle: &[Dart],
+    half_width_m: &impl Fn(EdgeId) -> f64,
+    out: &mut Roadside,
+) {
+    let width_m = |i: usize| half_width_m(cycle[i % cycle.len()].edge());
+    let first = (0..cycle.len()).find(|i| width_m(*i) != width_m(i + cycle.len() - 1));
+    let start = first.unwrap_or(0);
+    let mut line: Vec<Vec2> = Vec::new();
+    for i in start..start + cycle.len() {
+        let next = graph.dart_line_m(cycle[i % cycle.len()]);
+        line.extend(&next[usize::from(!line.is_empty())..]);
+        if width_m(i) != width_m(i + 1) {
+            out.left_of(&line, width_m(i));
+            // The end of the wider street sticks out beside the narrower one.
+            out.disc(line[line.len() - 1], width_m(i).max(width_m(i + 1)));
+            line.clear();
+        }
+    }
+    if first.is_none() && line.len() > 1 {
+        let (at, before, after) = (line[0], line[line.len() - 2], line[1]);
+        out.left_of(&line, width_m(0));
+        out.bend(at, at - before, after - at, width_m(0));
+    }
+}
+
 /// Pairs of faces that share a street, each once with the streets between, in order.
 /// Aliaga 2008, section 3.1.2: the block graph is dual to the street graph.
 pub fn adjacency(faces: &Faces, graph: &StreetGraph) -> Vec<(FaceId, FaceId, EdgeId)> {
-    let left = |d: exurb_graph::Dart| faces.left.get(d.index()).copied().flatten();
+    let left = |d: Dart| faces.left.get(d.index()).copied().flatten();
     graph
         .edges()
         .filter_map(|(id, _)| {

@@ -53,11 +53,7 @@ impl Street {
 
     /// Width of the carriageway in metres, by tag, else lanes and class.
     pub fn width_m(&self) -> f64 {
-        if self.width_m > 0.0 {
-            self.width_m
-        } else {
-            self.class.default_width_m(self.lanes())
-        }
+        if self.width_m > 0.0 { self.width_m } else { self.class.default_width_m(self.lanes()) }
     }
 
     /// Streets cross without meeting when their levels differ. Bridges and tunnels without a
@@ -108,9 +104,7 @@ pub struct Derive {
 /// vertex lies within 2 cm of another street (bridges and tunnels pass); 3 drop exact duplicates;
 /// 4 make nodes where ends meet; 5 clip; 6 dissolve nodes of degree 2 between like streets.
 pub fn derive(map: &StreetMap, options: &Derive) -> StreetGraph {
-    let kept = || {
-        map.ways.iter().filter(|w| options.with_other || w.street.role() != Role::Other)
-    };
+    let kept = || map.ways.iter().filter(|w| options.with_other || w.street.role() != Role::Other);
     // 2 Ways of different levels meet at shared nodes that are an end of one of them: the foot of a
     // ramp. Split there first; crossings within a level follow.
     let mut shared: Vec<i64> = kept().flat_map(|w| w.nodes.iter().copied()).collect();
@@ -132,9 +126,7 @@ pub fn derive(map: &StreetMap, options: &Derive) -> StreetGraph {
     let noded = noding::node(lines, noding::Options { snap_m: 0.02, ..Default::default() });
 
     let streets: Vec<&Street> = kept().map(|w| &w.street).collect();
-    let mut graph = from_lines(
-        noded.into_iter().map(|l| (l.points, streets[l.data].clone())),
-    );
+    let mut graph = from_lines(noded.into_iter().map(|l| (l.points, streets[l.data].clone())));
     if let Some(area) = &options.area {
         for node in graph.clip(area) {
             graph.node_mut(node).data.cut = true;
@@ -153,8 +145,9 @@ pub fn from_lines(lines: impl IntoIterator<Item = (Vec<GridPoint>, Street)>) -> 
         let (Some(first), Some(last)) = (line.first().copied(), line.last().copied()) else {
             continue;
         };
-        let mut node =
-            |p, g: &mut StreetGraph| *at.entry(p).or_insert_with(|| g.add_node(p, Junction::default()));
+        let mut node = |p, g: &mut StreetGraph| {
+            *at.entry(p).or_insert_with(|| g.add_node(p, Junction::default()))
+        };
         let (from, to) = (node(first, &mut graph), node(last, &mut graph));
         let is_same = |dart: &Dart| {
             let known = graph.edge(dart.edge()).line();
@@ -222,5 +215,9 @@ pub fn shares_by_origin(graph: &StreetGraph) -> (f64, f64, f64) {
         }
     }
     let total: f64 = example + procedural + other;
-    if total == 0.0 { (0.0, 0.0, 0.0) } else { (example / total, procedural / total, other / total) }
+    if total == 0.0 {
+        (0.0, 0.0, 0.0)
+    } else {
+        (example / total, procedural / total, other / total)
+    }
 }

@@ -21,11 +21,11 @@ impl BoxGrid {
     pub fn new(boxes: Vec<(GridPoint, GridPoint)>) -> Self {
         let total: i64 = boxes.iter().map(|(lo, hi)| width(*lo, *hi)).sum();
         let cell_mm = (total / boxes.len().max(1) as i64).max(LEAST_CELL_MM);
-        let table = CellTable::new(cell_mm, boxes.len(), |table, entries| {
+        let table = CellTable::new(cell_mm, boxes.len(), |table, put| {
             for (id, (lo, hi)) in boxes.iter().enumerate() {
                 match slots(table, *lo, *hi) {
-                    Some(found) => entries.extend(found.map(|slot| (slot, id as u32))),
-                    None => entries.push((table.slot(-1, -1), id as u32)),
+                    Some(found) => found.for_each(|slot| put(slot, id as u32)),
+                    None => put(table.slot(-1, -1), id as u32),
                 }
             }
         });

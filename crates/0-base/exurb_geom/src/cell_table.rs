@@ -16,25 +16,25 @@ pub struct CellTable {
 }
 
 impl CellTable {
-    /// The table of items that `list` hands out as (column, row, item).
-    pub fn new(cell_mm: i64, items: usize, list: impl FnOnce(&Self, &mut Vec<(u32, u32)>)) -> Self {
+    /// The table of items that `list` hands out as (slot, item). It is asked twice, to count and to
+    /// fill, so that nothing but the table itself is ever held; it must say the same both times.
+    pub fn new(cell_mm: i64, items: usize, list: impl Fn(&Self, &mut dyn FnMut(u32, u32))) -> Self {
         let slots = (items * 2).next_power_of_two().max(16);
         let mut table =
-            Self { cell_mm, mask: slots as u64 - 1, starts: vec![0; slots + 1], items: Vec::new() };
-        let mut entries: Vec<(u32, u32)> = Vec::with_capacity(items * 2);
-        list(&table, &mut entries);
-        for (slot, _) in &entries {
-            table.starts[*slot as usize + 1] += 1;
+            Self { cell_mm, mask: slots as u64 - 1, starts: Vec::new(), items: Vec::new() };
+        // The start of slot `s` is counted up at `s + 2` and moved to `s + 1` by filling.
+        let mut starts = vec![0u32; slots + 2];
+        list(&table, &mut |slot, _| starts[slot as usize + 2] += 1);
+        for slot in 2..starts.len() {
+            starts[slot] += starts[slot - 1];
         }
-        for slot in 0..slots {
-            table.starts[slot + 1] += table.starts[slot];
-        }
-        table.items = vec![0; entries.len()];
-        let mut next = table.starts.clone();
-        for (slot, item) in entries {
-            table.items[next[slot as usize] as usize] = item;
-            next[slot as usize] += 1;
-        }
+        let mut filled = vec![0; starts[slots + 1] as usize];
+        list(&table, &mut |slot, item| {
+            let next = &mut starts[slot as usize + 1];
+            filled[*next as usize] = item;
+            *next += 1;
+        });
+        (table.starts, table.items) = (starts, filled);
         table
     }
 

@@ -16,17 +16,13 @@ pub fn line_to_geo(line: &[Vec2]) -> LineString<f64> {
     LineString(line.iter().map(|p| coord(*p)).collect())
 }
 
-pub fn many_to_geo<'a>(
-    polygons: impl IntoIterator<Item = &'a Polygon>,
-) -> geo::MultiPolygon<f64> {
+pub fn many_to_geo<'a>(polygons: impl IntoIterator<Item = &'a Polygon>) -> geo::MultiPolygon<f64> {
     geo::MultiPolygon(polygons.into_iter().map(to_geo).collect())
 }
 
 /// Largest first, ties by coordinates, so that results do not depend on the library's order.
 pub fn from_geo(polygons: geo::MultiPolygon<f64>) -> Vec<Polygon> {
-    let ring = |r: &LineString<f64>| {
-        r.0.iter().map(|c| GridPoint::m(c.x, c.y)).collect::<Vec<_>>()
-    };
+    let ring = |r: &LineString<f64>| r.0.iter().map(|c| GridPoint::m(c.x, c.y)).collect::<Vec<_>>();
     let mut out: Vec<Polygon> = polygons
         .iter()
         .filter_map(|p| Polygon::new(ring(p.exterior()), p.interiors().iter().map(ring).collect()))

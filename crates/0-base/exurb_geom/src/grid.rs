@@ -127,6 +127,9 @@ mod tests {
     fn what_is_not_finite_is_refused() {
         assert_eq!(GridPoint::checked(Vec2::new(f64::NAN, 0.0)), None);
         assert_eq!(GridPoint::checked(Vec2::new(1e9, 0.0)), None);
-        assert_eq!(GridPoint::checked(Vec2::new(1.0004, -2.0)), Some(GridPoint { x: 1000, y: -2000 }));
+        assert_eq!(
+            GridPoint::checked(Vec2::new(1.0004, -2.0)),
+            Some(GridPoint { x: 1000, y: -2000 })
+        );
     }
 }

@@ -54,8 +54,8 @@ pub mod trig;
 pub mod voronoi;
 
 pub use bounds::Bounds;
-pub use crs::Crs;
 pub use box_grid::BoxGrid;
+pub use crs::Crs;
 pub use glam::DVec2 as Vec2;
 pub use grid::GridPoint;
 pub use oriented_box::OrientedBox;

@@ -24,8 +24,7 @@ pub fn inset(polygon: &Polygon, distance_m: f64) -> Vec<Polygon> {
     if distance_m == 0.0 {
         return vec![polygon.clone()];
     }
-    let style =
-        BufferStyle::new(-distance_m).line_join(LineJoin::Miter(MITRE_MIN_ANGLE_RAD));
+    let style = BufferStyle::new(-distance_m).line_join(LineJoin::Miter(MITRE_MIN_ANGLE_RAD));
     convert::from_geo(convert::to_geo(polygon).buffer_with_style(style))
 }
 

@@ -91,7 +91,8 @@ mod tests {
     #[test]
     fn a_bow_tie_becomes_two_triangles() {
         let ring = [(0.0, 0.0), (10.0, 10.0), (10.0, 0.0), (0.0, 9.0)];
-        let bow = Polygon::new(ring.map(|(x, y)| GridPoint::m(x, y)).to_vec(), vec![]).expect("area");
+        let bow =
+            Polygon::new(ring.map(|(x, y)| GridPoint::m(x, y)).to_vec(), vec![]).expect("area");
         assert!(!bow.is_valid());
         assert_eq!(repair(&bow).len(), 2);
     }

@@ -64,7 +64,8 @@ impl Polygon {
 
     /// The smallest axis-parallel box around it.
     pub fn bounds(&self) -> Bounds {
-        Bounds::of(self.exterior.iter().copied()).unwrap_or(Bounds { min: Vec2::ZERO, max: Vec2::ZERO })
+        Bounds::of(self.exterior.iter().copied())
+            .unwrap_or(Bounds { min: Vec2::ZERO, max: Vec2::ZERO })
     }
 
     /// Is `p` inside or on the boundary?

@@ -52,7 +52,8 @@ impl Frame {
             "+proj=tmerc +lat_0={:.7} +lon_0={:.7} +k=1 +x_0=0 +y_0=0 +datum=WGS84 +units=m",
             origin.lat, origin.lon
         );
-        match (Proj::from_proj_string(&local), Proj::from_proj_string("+proj=longlat +datum=WGS84")) {
+        match (Proj::from_proj_string(&local), Proj::from_proj_string("+proj=longlat +datum=WGS84"))
+        {
             (Ok(local), Ok(geographic)) => Ok(Self { origin, local, geographic }),
             _ => Err(error),
         }

@@ -1,8 +1,8 @@
 //! What streets take of the ground beside them.
 //!
 //! [`crate::offset::carriageway`] gives one street as a clean polygon, which costs an overlay. Here
-//! the ground along many streets is collected as plain convex pieces, left of each line only, and
-//! taken off an area in a single overlay: the pieces may overlap as they like.
+//! the ground along many streets is collected in plain pieces, left of each line only, and taken off
+//! an area in a single overlay: the pieces may overlap as they like.
 
 use geo::{BooleanOps, Coord, LineString, bool_ops::FillRule};
 
@@ -10,6 +10,9 @@ use crate::{Polygon, Vec2, convert, trig};
 
 /// Arcs are drawn in steps of an eighth of half a turn, as in [`crate::offset::carriageway`].
 const STEP_RAD: f64 = std::f64::consts::FRAC_PI_8;
+
+/// Cosine of [`STEP_RAD`].
+const COS_STEP: f64 = 0.923_879_532_511_286_7;
 
 /// Ground taken by streets.
 #[derive(Clone, Debug, Default)]
@@ -19,13 +22,42 @@ pub struct Roadside {
 
 impl Roadside {
     /// Takes what lies left of the line within `width_m`, its outer bends rounded.
+    ///
+    /// As few strips as can be: two segments share a mitre where the line turns left and both are
+    /// long enough, or turns right by no more than a step of an arc. Else a strip ends there, and
+    /// the next one overlaps it or leaves room for an arc.
     pub fn left_of(&mut self, line: &[Vec2], width_m: f64) {
-        for w in line.windows(2) {
-            let across = (w[1] - w[0]).normalize_or_zero().perp() * width_m;
-            self.push(&[w[0], w[1], w[1] + across, w[0] + across]);
+        let normals: Vec<Vec2> =
+            line.windows(2).map(|w| (w[1] - w[0]).normalize_or_zero().perp()).collect();
+        let mut strip = Strip::default();
+        // What the mitre at its start takes off the outer side of the current segment.
+        let mut taken_m = 0.0;
+        for (i, w) in line.windows(2).enumerate() {
+            let (at, before) = (w[0], i.checked_sub(1).map(|j| normals[j]));
+            let mitre = before.and_then(|n| mitre(n, normals[i]));
+            let length_m = |j: usize| line[j].distance(line[j + 1]);
+            match (before, mitre) {
+                (Some(_), Some((offset, setback)))
+                    if setback * width_m + taken_m <= length_m(i - 1)
+                        && setback * width_m <= length_m(i) =>
+                {
+                    strip.push(at, at + offset * width_m);
+                    taken_m = setback * width_m;
+                }
+                _ => {
+                    if let Some(before) = before {
+                        strip.push(at, at + before * width_m);
+                        self.push(&std::mem::take(&mut strip).outline());
+                        self.bend(at, -before.perp(), w[1] - at, width_m);
+                    }
+                    strip.push(at, at + normals[i] * width_m);
+                    taken_m = 0.0;
+                }
+            }
         }
-        for w in line.windows(3) {
-            self.bend(w[1], w[1] - w[0], w[2] - w[1], width_m);
+        if let (Some(at), Some(normal)) = (line.last(), normals.last()) {
+            strip.push(*at, *at + *normal * width_m);
+            self.push(&strip.outline());
         }
     }
 
@@ -64,12 +96,41 @@ impl Roadside {
         convert::from_geo(left)
     }
 
-    /// Adds a convex piece, counter-clockwise.
+    /// Adds a piece that turns counter-clockwise around each of its points.
     fn push(&mut self, corners: &[Vec2]) {
         let mut ring: Vec<Coord<f64>> = corners.iter().map(|p| Coord { x: p.x, y: p.y }).collect();
         ring.extend(ring.first().copied());
         self.pieces.push(geo::Polygon::new(LineString(ring), Vec::new()));
     }
+}
+
+/// A strip along a line: the line itself and its outer side.
+#[derive(Default)]
+struct Strip {
+    line: Vec<Vec2>,
+    side: Vec<Vec2>,
+}
+
+impl Strip {
+    fn push(&mut self, on_line: Vec2, beside: Vec2) {
+        self.line.push(on_line);
+        self.side.push(beside);
+    }
+
+    fn outline(self) -> Vec<Vec2> {
+        let mut out = self.line;
+        out.extend(self.side.into_iter().rev());
+        out
+    }
+}
+
+/// Where the sides of two segments of unit normals `m` and `n` meet, for a width of 1: from the
+/// vertex, and what is taken off each side (negative where it grows longer). `None` for sharp turns.
+fn mitre(m: Vec2, n: Vec2) -> Option<(Vec2, f64)> {
+    const SHARPEST_COS: f64 = -0.7;
+    let (sin, cos) = (m.perp_dot(n), m.dot(n));
+    let gentle = if sin >= 0.0 { cos > SHARPEST_COS } else { cos >= COS_STEP };
+    gentle.then(|| ((m + n) / (1.0 + cos), sin / (1.0 + cos)))
 }
 
 #[cfg(test)]
@@ -120,7 +181,7 @@ mod tests {
     #[test]
     fn nothing_taken_leaves_the_area() {
         let square = Polygon::rectangle(GridPoint::m(0.0, 0.0), GridPoint::m(9.0, 9.0));
-        assert_eq!(Roadside::default().taken_off(&square), [square.clone()]);
+        assert_eq!(Roadside::default().taken_off(&square), std::slice::from_ref(&square));
         let mut all = Roadside::default();
         all.disc(Vec2::splat(4.5), 20.0);
         assert!(all.taken_off(&square).is_empty());

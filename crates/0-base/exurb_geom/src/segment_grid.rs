@@ -22,9 +22,9 @@ impl SegmentGrid {
         let total: f64 = segments.iter().map(|(a, b)| a.distance_m(*b) * 1000.0).sum();
         let mean_mm = total / segments.len().max(1) as f64;
         let cell_mm = mean_mm.max(LEAST_CELL_MM) as i64;
-        let table = CellTable::new(cell_mm, segments.len(), |table, entries| {
+        let table = CellTable::new(cell_mm, segments.len(), |table, put| {
             for (id, (a, b)) in segments.iter().enumerate() {
-                for_cells(table, *a, *b, 0, |slot| entries.push((slot, id as u32)));
+                for_cells(table, *a, *b, 0, |slot| put(slot, id as u32));
             }
         });
         Self { segments, table }

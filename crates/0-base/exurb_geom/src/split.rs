@@ -201,7 +201,7 @@ mod tests {
         let square = Polygon::rectangle(GridPoint::m(0., 0.), GridPoint::m(9., 9.));
         let (a, b) = (Vec2::new(-1.0, 0.0), Vec2::new(-1.0, 1.0));
         assert!(left_of(&square, a, b).is_empty());
-        assert_eq!(left_of(&square, b, a), [square.clone()]);
+        assert_eq!(left_of(&square, b, a), std::slice::from_ref(&square));
         assert_eq!(left_of(&square, a, a), [square]);
     }
 }

@@ -31,7 +31,9 @@ use serde::{Serialize, de::DeserializeOwned};
 use serde_json::Value;
 
 /// Parameters of an operation.
-pub trait Params: Clone + Default + Serialize + DeserializeOwned + JsonSchema + Send + Sync {
+pub trait Params:
+    Clone + Default + Serialize + DeserializeOwned + JsonSchema + Send + Sync
+{
     /// What ranges alone cannot say. The message names the parameter, its value, and what is
     /// expected.
     fn check(&self) -> Result<(), String> {
@@ -45,7 +47,8 @@ pub fn schema<P: Params>() -> Value {
     let defaults = serde_json::to_value(P::default()).unwrap_or_default();
     if let Some(properties) = schema.get_mut("properties").and_then(Value::as_object_mut) {
         for (name, property) in properties.iter_mut() {
-            if let (Some(property), Some(default)) = (property.as_object_mut(), defaults.get(name)) {
+            if let (Some(property), Some(default)) = (property.as_object_mut(), defaults.get(name))
+            {
                 property.insert("default".into(), default.clone());
             }
         }

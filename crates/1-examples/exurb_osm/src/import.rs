@@ -1,7 +1,7 @@
-//! From the elements of a file to a city, in passes: 1 which ways and relations matter; 2 where
+//! From the elements of a file to a draft of a city, in passes: 1 which ways and relations matter; 2 where
 //! their nodes lie; 3 streets, buildings, areas and features.
 
-use exurb_city::{Draft, ImportOptions, Imported};
+use exurb_city::{Draft, ImportOptions};
 use exurb_geom::{Frame, LonLat};
 
 use crate::elements::{Bounds, Elements};
@@ -11,8 +11,12 @@ use crate::{Error, streets, surfaces};
 /// Attribution of every OpenStreetMap file.
 pub const ATTRIBUTION: &str = "© OpenStreetMap contributors, ODbL 1.0";
 
-/// The city of sorted elements.
-pub fn city(elements: Elements, file: &str, options: &ImportOptions) -> Result<Imported, Error> {
+/// What sorted elements hold, in the local frame, and one sentence for each thing to know.
+pub fn draft(
+    elements: Elements,
+    file: &str,
+    options: &ImportOptions,
+) -> Result<(Draft, Vec<String>), Error> {
     let mut warnings = Vec::new();
     let extent = elements.bounds.filter(usable);
     if elements.bounds.is_some() && extent.is_none() {
@@ -43,11 +47,7 @@ pub fn city(elements: Elements, file: &str, options: &ImportOptions) -> Result<I
         let n = elements.misplaced;
         warnings.push(format!("{n} nodes lie outside ±180 and ±90 degrees; ways are split there"));
     }
-    drop((elements, places));
-    let mut imported =
-        draft.assemble(options).map_err(|source| Error::Draft { file: file.to_owned(), source })?;
-    imported.warnings.splice(0..0, warnings);
-    Ok(imported)
+    Ok((draft, warnings))
 }
 
 /// The file's name without folders and endings.

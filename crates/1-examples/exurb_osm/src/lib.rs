@@ -41,6 +41,6 @@ const GENERATOR: &str = "exurb";
 
 pub use error::Error;
 pub use import::ATTRIBUTION;
-pub use read::{Format, read, read_bytes};
+pub use read::{Format, read, read_bytes, read_draft};
 pub use write_pbf::write_pbf;
 pub use write_xml::write_xml;

@@ -27,9 +27,10 @@ impl Places {
         let mut used = vec![false; elements.nodes.len()];
         let mut last = 0;
         for (way, _) in elements.ways.iter().zip(needed).filter(|(_, needed)| **needed) {
-            for at in way.start..way.end {
-                if let Some(found) = search(&elements.nodes, elements.refs[at], last) {
-                    index[at] = found as u32;
+            let range = way.start..way.end;
+            for (slot, id) in index[range.clone()].iter_mut().zip(&elements.refs[range]) {
+                if let Some(found) = search(&elements.nodes, *id, last) {
+                    *slot = found as u32;
                     used[found] = true;
                     last = found;
                 }

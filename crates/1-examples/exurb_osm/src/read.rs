@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
-use exurb_city::{ImportOptions, Imported};
+use exurb_city::{Draft, ImportOptions, Imported};
 
 use crate::elements::Elements;
 use crate::{Error, import, read_overpass, read_pbf, read_xml};
@@ -58,9 +58,17 @@ impl Format {
 /// The content decides on the format; the ending is asked where the content does not tell.
 /// The city's name is the file's without its endings.
 pub fn read(path: &Path, options: &ImportOptions) -> Result<Imported, Error> {
+    let (draft, warnings) = read_draft(path, options)?;
+    city(draft, warnings, &path.display().to_string(), options)
+}
+
+/// [`read`] up to the draft: what the file holds, uncut, before streets become a graph and blocks.
+/// With it one sentence for each thing to know. Of the options only the box matters, as the middle
+/// of the frame.
+pub fn read_draft(path: &Path, options: &ImportOptions) -> Result<(Draft, Vec<String>), Error> {
     let file = path.display().to_string();
     let open = File::open(path).map_err(|source| Error::Io { file: file.clone(), source })?;
-    read_from(BufReader::with_capacity(1 << 16, open), &file, Format::of_name(&file), options)
+    draft(BufReader::with_capacity(1 << 16, open), &file, Format::of_name(&file), options)
 }
 
 /// [`read`] from memory: `name` stands for the file's, `format` decides where the content does not
@@ -71,18 +79,31 @@ pub fn read_bytes(
     format: Option<Format>,
     options: &ImportOptions,
 ) -> Result<Imported, Error> {
-    read_from(bytes, name, format, options)
+    let (draft, warnings) = draft(bytes, name, format, options)?;
+    city(draft, warnings, name, options)
 }
 
-fn read_from(
+fn draft(
     input: impl BufRead,
     file: &str,
     format: Option<Format>,
     options: &ImportOptions,
-) -> Result<Imported, Error> {
+) -> Result<(Draft, Vec<String>), Error> {
     let mut elements = elements(input, file, format)?;
     elements.sort();
-    import::city(elements, file, options)
+    import::draft(elements, file, options)
+}
+
+fn city(
+    draft: Draft,
+    warnings: Vec<String>,
+    file: &str,
+    options: &ImportOptions,
+) -> Result<Imported, Error> {
+    let failed = |source| Error::Draft { file: file.to_owned(), source };
+    let mut imported = draft.assemble(options).map_err(failed)?;
+    imported.warnings.splice(0..0, warnings);
+    Ok(imported)
 }
 
 /// The elements of a file of any format.

@@ -263,7 +263,9 @@ fn a_map_without_streets_is_a_city_with_a_warning() {
 }
 
 /// A map with everything, in all formats.
-fn samples() -> [(Vec<u8>, fn(&[u8])); 4] {
+type Body = fn(&[u8]);
+
+fn samples() -> [(Vec<u8>, Body); 4] {
     let ring = |a: i64| [a, a + 1, a + 11, a + 10, a];
     let body = "<bounds minlat=\"0\" minlon=\"0\" maxlat=\"0.009\" maxlon=\"0.009\"/>".to_owned()
         + &way(9, &[1, 10, 100], STREET)

@@ -81,12 +81,12 @@ fn street(i: usize) -> Street {
         class: Class::ALL[i % 15],
         lanes: (i % 5) as u8,
         width_m: f64::from(i32 % 7) * 1.25,
-        oneway: i % 3 == 0,
+        oneway: i.is_multiple_of(3),
         bridge: i % 11 == 5,
         tunnel: i % 13 == 6,
         layer: (i32 % 5 - 2) as i8,
         roundabout: i % 17 == 8,
-        name: (i % 2 == 0).then(|| Arc::from(format!("Street & \"{i}\" <ä>"))),
+        name: i.is_multiple_of(2).then(|| Arc::from(format!("Street & \"{i}\" <ä>"))),
         ..Street::default()
     }
 }

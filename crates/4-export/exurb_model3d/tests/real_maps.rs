@@ -1,5 +1,7 @@
 //! Models of real maps, where the shared data are at hand.
 
+#![allow(clippy::print_stdout, clippy::unwrap_used, reason = "this is a test")]
+
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;

@@ -104,7 +104,7 @@ pub fn expand(growth: &mut Growth, node: NodeId) {
 pub fn step(growth: &mut Growth, node: NodeId, direction: Vec2) {
     let vertex = growth.net.graph.node(node).data.clone();
     let (at, start) = (growth.net.graph.node(node).at.to_m(), vertex.start);
-    let statistics = growth.style(start).statistics.clone();
+    let statistics = growth.style(start).statistics;
     let mean_m = street_m(growth, start);
     let length_m = positive_normal(growth, mean_m, statistics.length_variance_m2)
         .clamp(0.5 * mean_m, 2.0 * mean_m)
