@@ -37,8 +37,9 @@ pub fn layer(site: &Site) -> Layer {
         })
         .collect();
     let mut all = empty();
-    for chunk in &chunks {
-        all.iter_mut().zip(chunk).for_each(|(to, from)| to.append(from));
+    // Each chunk is let go as soon as it is joined.
+    for chunk in chunks {
+        all.iter_mut().zip(&chunk).for_each(|(to, from)| to.append(from));
     }
     Layer { name: "buildings", parts: all.into() }
 }

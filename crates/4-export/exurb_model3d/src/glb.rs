@@ -30,8 +30,9 @@ pub fn to_glb(city: &City, options: &Options) -> Result<Vec<u8>, Error> {
     let mut file = File::default();
     file.root.asset = asset(city, &scene)?;
     let mut children = Vec::new();
-    for layer in &scene.layers {
-        children.push(file.layer(layer)?);
+    // A layer that is written is let go: large cities need the room.
+    for layer in scene.layers {
+        children.push(file.layer(&layer)?);
     }
     let root = file.root.push(json::Node {
         children: (!children.is_empty()).then_some(children),

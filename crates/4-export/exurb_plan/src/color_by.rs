@@ -134,7 +134,8 @@ impl Key {
     /// What the colours mean, for the values that `city` has.
     pub fn legend(&self, city: &City) -> Vec<Entry> {
         let entry = |label: &str, color| Entry { label: label.replace('_', " "), color };
-        let streets = || city.streets.edges().map(|(_, e)| &e.data);
+        let others = || city.other_ways.iter().map(|w| &w.street);
+        let streets = || city.streets.edges().map(|(_, e)| &e.data).chain(others());
         match self.by {
             None => Vec::new(),
             Some(ColorBy::Class) => {
