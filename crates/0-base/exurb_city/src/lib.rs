@@ -15,7 +15,7 @@
 //! | [`provenance`] | origin and source of elements |
 //! | [`mod@simplify`] | dual carriageways → one street, small roundabouts → junctions |
 //! | [`hierarchy`] | levels of streets, and strokes |
-//! | [`laws`] | what every city keeps, and its likeness gates |
+//! | [`mod@laws`] | what every city keeps, and its likeness gates |
 //! | [`Edit`] | what an operation changes |
 
 pub mod area;

@@ -2,7 +2,7 @@
 //!
 //! [`Info`] is, key by key, what `exurb info --json` prints (contract, section 5). Keys never vanish;
 //! what does not apply is `None`. Counts, lengths and areas are those of the whole city; shares of
-//! the network are measured inside the target, as [`exurb_city::laws`] says.
+//! the network are measured inside the target, as [`mod@exurb_city::laws`] says.
 
 use std::collections::BTreeMap;
 

@@ -2,7 +2,7 @@
 //!
 //! Source: the definitions and limits were set on real maps before any method was written, and are
 //! the same for imported and for synthesised cities. Laws are absolute and decide whether a city is
-//! valid; likeness gates ([`gates`]) compare with an example and never do. Shares of the network
+//! valid; likeness gates ([`gates()`]) compare with an example and never do. Shares of the network
 //! (overlap, components, islands, junctions, short edges) are measured inside the target, where
 //! streets cut at its border end in cut ends; everything else on the whole city. Lengths in metres.
 //! O(n log n).

@@ -5,7 +5,7 @@
 //! like frontage that goes with the building before: shared walls go on, gaps go on ([`choose`]);
 //! 3 the building is put behind the example's setback: in rows it is stretched from border to border,
 //! around corners it follows both fronts, elsewhere it keeps its outline and its turn and is scaled a
-//! little ([`place`]); 4 what does not fit, lies in water or under a bridge, or would be too small,
+//! little ([`mod@place`]); 4 what does not fit, lies in water or under a bridge, or would be too small,
 //! leaves its lot empty, as do as many lots as in the example where that has all its buildings.
 //! Units: metres. Complexity: linear in lots. Each block has its own random stream by place.
 
