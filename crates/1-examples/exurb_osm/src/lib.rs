@@ -1,6 +1,6 @@
 //! OpenStreetMap files both ways.
 //!
-//! [`read`] makes a city of OSM XML, PBF or Overpass JSON; [`write_xml()`] and [`write_pbf()`] write one.
+//! [`mod@read`] makes a city of OSM XML, PBF or Overpass JSON; [`write_xml()`] and [`write_pbf()`] write one.
 //! All formats go through one list of elements; what follows is the same for all.
 //!
 //! | part | what it does |

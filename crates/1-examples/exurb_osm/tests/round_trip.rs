@@ -59,7 +59,7 @@ fn town(n: i32, bends: &[i32]) -> City {
                     x: (p.x + q.x) / 2 + bend(count),
                     y: (p.y + q.y) / 2 + bend(count + 3),
                 };
-                streets.add_edge(*a, *b, vec![p, middle, q], street(count));
+                streets.add_edge(*a, *b, vec![p, middle, q], street(count, u == x));
                 count += 1;
             }
         }
@@ -75,10 +75,11 @@ fn town(n: i32, bends: &[i32]) -> City {
     city
 }
 
-fn street(i: usize) -> Street {
+/// Along and across differ in class, so that no two streets become one at a corner.
+fn street(i: usize, across: bool) -> Street {
     let i32 = i as i32;
     Street {
-        class: Class::ALL[i % 15],
+        class: Class::ALL[2 * i % 14 + usize::from(across)],
         lanes: (i % 5) as u8,
         width_m: f64::from(i32 % 7) * 1.25,
         oneway: i.is_multiple_of(3),
