@@ -169,3 +169,17 @@ fn random_stars_almost_all_have_a_skeleton() {
     });
     assert!(made.count() >= 396);
 }
+
+#[test]
+fn zz_case() {
+    let star = star(&[18.26898237700162, 10.890600944222891, 17.942392373391357, 15.692205457802602, 18.25948901695972, 15.944662740081313, 18.201766114702863, 15.372577315329224, 19.91221407119367, 6.162263764953197, 18.77217904449283, 6.248551362335932]);
+    let sk = Skeleton::of(&star).expect("some");
+    println!("{} last {}", star.area_m2(), sk.last_m());
+    for share in [0.02, 0.1, 0.2, 0.35, 0.5, 0.6, 0.7, 0.85] {
+        let t = sk.last_m() * share;
+        let inset: f64 = offset::inset(&star, t).iter().map(Polygon::area_m2).sum();
+        println!("{t} ours {} inset {}", area_after(&sk, t), inset);
+    }
+    for n in &sk.nodes { println!("{n:?}"); }
+    for f in &sk.faces { println!("{f:?}"); }
+}
