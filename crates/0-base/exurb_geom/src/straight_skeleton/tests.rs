@@ -1,7 +1,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::{GridPoint, offset, trig};
+use crate::{GridPoint, offset, overlay, trig};
 
 fn polygon(ring: &[(f64, f64)]) -> Polygon {
     let points = ring.iter().map(|(x, y)| GridPoint::m(*x, *y)).collect();
@@ -129,17 +129,41 @@ fn star(radii: &[f64]) -> Polygon {
     Polygon::new(points.map(GridPoint::round).collect(), vec![]).expect("has area")
 }
 
+/// A side that has vanished next to a reflex corner cuts a mitred inset short but not the front;
+/// rounded corners cut least.
+fn lies_between_insets(polygon: &Polygon, skeleton: &Skeleton) {
+    let corners = polygon.exterior().len();
+    let first_m = skeleton.nodes[corners..].iter().map(|n| n.time_m).fold(f64::MAX, f64::min);
+    let slack = 0.003 * polygon.area_m2();
+    for time_m in [0.5, 0.95].map(|share| share * first_m) {
+        let inset: f64 = offset::inset(polygon, time_m).iter().map(Polygon::area_m2).sum();
+        let ours = area_after(skeleton, time_m);
+        assert!((ours - inset).abs() < slack, "at {time_m}: {ours} and {inset} of {polygon:?}");
+    }
+    let mut outline = crate::polyline::to_m(polygon.exterior());
+    outline.push(outline[0]);
+    for share in [0.2, 0.5, 0.8] {
+        let time_m = share * skeleton.last_m();
+        let mitred: f64 = offset::inset(polygon, time_m).iter().map(Polygon::area_m2).sum();
+        let swept = offset::carriageway(&outline, time_m, offset::Cap::Round);
+        let rounded: f64 = overlay::difference(polygon, &swept).iter().map(Polygon::area_m2).sum();
+        let ours = area_after(skeleton, time_m);
+        let between = mitred - slack < ours && ours < rounded + slack;
+        assert!(between, "at {time_m}: {mitred} < {ours} < {rounded} of {polygon:?}");
+    }
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(300))]
+    #![proptest_config(ProptestConfig::with_cases(500))]
 
     #[test]
-    fn random_stars_agree_with_their_insets(
+    fn random_stars_lie_between_their_insets(
         radii in prop::collection::vec(4.0..20.0f64, 4..16),
     ) {
         let star = star(&radii);
         // Almost all succeed; what is returned is right.
         if let Some(skeleton) = Skeleton::of(&star) {
-            agrees_with_insets(&star, &skeleton);
+            lies_between_insets(&star, &skeleton);
         }
     }
 
@@ -168,18 +192,4 @@ fn random_stars_almost_all_have_a_skeleton() {
         Skeleton::of(&star(&radii)).is_some()
     });
     assert!(made.count() >= 396);
-}
-
-#[test]
-fn zz_case() {
-    let star = star(&[18.26898237700162, 10.890600944222891, 17.942392373391357, 15.692205457802602, 18.25948901695972, 15.944662740081313, 18.201766114702863, 15.372577315329224, 19.91221407119367, 6.162263764953197, 18.77217904449283, 6.248551362335932]);
-    let sk = Skeleton::of(&star).expect("some");
-    println!("{} last {}", star.area_m2(), sk.last_m());
-    for share in [0.02, 0.1, 0.2, 0.35, 0.5, 0.6, 0.7, 0.85] {
-        let t = sk.last_m() * share;
-        let inset: f64 = offset::inset(&star, t).iter().map(Polygon::area_m2).sum();
-        println!("{t} ours {} inset {}", area_after(&sk, t), inset);
-    }
-    for n in &sk.nodes { println!("{n:?}"); }
-    for f in &sk.faces { println!("{f:?}"); }
 }
