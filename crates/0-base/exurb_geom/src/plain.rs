@@ -70,8 +70,17 @@ mod tests {
     use geo::Validation;
     use proptest::prelude::*;
 
+    /// In whole metres, which the library's floating point holds exactly: in millimetres it can take
+    /// three points on a line for a corner.
     fn ring(points: &[(i32, i32)]) -> Vec<GridPoint> {
-        points.iter().map(|(x, y)| GridPoint { x: *x, y: *y }).collect()
+        points.iter().map(|(x, y)| GridPoint { x: *x * 1000, y: *y * 1000 }).collect()
+    }
+
+    #[test]
+    fn a_spike_is_no_corner_in_millimetres_either() {
+        let spike = [(21, 14), (23, 10), (22, 12), (0, 0)].map(|(x, y)| GridPoint { x, y });
+        let polygon = Polygon::new(spike.to_vec(), vec![]).expect("has area");
+        assert!(!is_plainly_valid(&polygon));
     }
 
     proptest! {
