@@ -30,10 +30,8 @@ pub fn run(args: &[&str]) -> Outcome {
         }
         _ => return Err("usage: cargo xtask fuzz [TARGET|all] [SECONDS]".into()),
     };
-    for name in chosen {
-        fuzz(&name, seconds)?;
-    }
-    Ok(())
+    let found: Vec<String> = chosen.iter().filter_map(|name| fuzz(name, seconds).err()).collect();
+    if found.is_empty() { Ok(()) } else { Err(found.join("\n")) }
 }
 
 fn only(known: Vec<String>, target: &str) -> Outcome<Vec<String>> {
@@ -79,7 +77,7 @@ fn fuzz(name: &str, seconds: u32) -> Outcome {
     fuzzer.arg(built.join(triple).join("release").join(name));
     fuzzer.arg(&found).arg(root().join("fuzz/corpus").join(name));
     fuzzer.args([format!("-max_total_time={seconds}"), "-rss_limit_mb=2048".into()]);
-    fuzzer.args(["-timeout=10", "-max_len=65536", "-print_final_stats=1", "-verbosity=0"]);
+    fuzzer.args(["-timeout=30", "-max_len=65536", "-print_final_stats=1", "-verbosity=0"]);
     fuzzer.arg(format!("-artifact_prefix={}/", Path::new(&crashes).display()));
     shell::run(&mut fuzzer).map_err(|e| format!("{e}: see {}", crashes.display()))
 }
