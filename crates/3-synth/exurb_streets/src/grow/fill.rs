@@ -12,10 +12,15 @@ use super::error::Error;
 use super::growth::Growth;
 use super::procedural;
 
-/// Share of the example's places that lie nearer to a street than what counts as empty.
+/// Share of the example's places from whose distance to a street the empty distance is learned: below
+/// 1, so that a few parks do not decide it.
 const NEAR_SHARE: f64 = 0.93;
-/// Places are looked at about this far apart in the example, in metres.
-const SAMPLE_M: f64 = 100.0;
+/// A place is empty when it lies this many times as far from a street as that. In a square block the
+/// centre lies 1.36 times as far, and following the example must not fill it.
+const SLACK: f64 = 1.4;
+/// Places of the example that are looked at, one per this many square metres up to a number.
+const SAMPLE_M2: f64 = 5_000.0;
+const MOST_SAMPLES: f64 = 8_000.0;
 /// Distances are learned up to this, in metres.
 const FARTHEST_M: f64 = 1600.0;
 /// Places of the example farther than this from every street are sea or hills, not city, in metres.
@@ -27,14 +32,11 @@ const ROUNDS: usize = 4;
 /// places of `area` that lie in the built-up parts, near some street of `all`.
 pub fn empty_distance_m(area: &Polygon, index: &SegmentIndex, all: &SegmentIndex) -> f64 {
     let built_up = |p: &Vec2| street_distance(all, *p) < BUILT_UP_M;
-    let mut distances: Vec<f64> = places(area, SAMPLE_M)
-        .into_iter()
-        .filter(built_up)
-        .map(|p| street_distance(index, p))
-        .collect();
+    let mut distances: Vec<f64> =
+        scattered(area).filter(built_up).map(|p| street_distance(index, p)).collect();
     distances.sort_by(f64::total_cmp);
     let rank = (distances.len() as f64 * NEAR_SHARE) as usize;
-    distances.get(rank).copied().unwrap_or(FARTHEST_M).max(60.0)
+    distances.get(rank).map_or(FARTHEST_M, |d| SLACK * d).max(60.0)
 }
 
 /// Lets streets set out towards empty places of the growth's area until there are none in reach.
@@ -107,6 +109,19 @@ fn street_distance(index: &SegmentIndex, p: Vec2) -> f64 {
         reach *= 2.0;
     }
     FARTHEST_M
+}
+
+/// Places scattered evenly over `area`, in no step with any street grid (the additive sequence of the
+/// plastic number).
+fn scattered(area: &Polygon) -> impl Iterator<Item = Vec2> {
+    const PLASTIC: f64 = 1.324_717_957_244_746;
+    let bounds = area.bounds();
+    let size = bounds.size();
+    let count = (size.x * size.y / SAMPLE_M2).clamp(100.0, MOST_SAMPLES) as u32;
+    (0..count)
+        .map(|i| Vec2::new(1.0 / PLASTIC, 1.0 / (PLASTIC * PLASTIC)) * f64::from(i + 1))
+        .map(move |p| bounds.min + p.fract() * size)
+        .filter(|p| area.contains(GridPoint::round(*p)))
 }
 
 /// Places of `area` on a square grid of `step_m`, row by row.
