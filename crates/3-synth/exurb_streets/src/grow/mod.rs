@@ -22,6 +22,7 @@
 mod cells;
 mod detect;
 mod drawing;
+mod edge;
 mod error;
 mod fill;
 mod finish;
