@@ -10,6 +10,7 @@ use exurb_graph::{EdgeId, Faces, NodeId};
 use exurb_measure::statistics::{StreetStatistics, street_statistics};
 
 use super::error::Error;
+use super::fit::Samples;
 use super::layer::{ChainEnd, Layer};
 use super::params::{self, Params};
 use super::patch::{self, Patch};
@@ -24,6 +25,8 @@ pub struct Vocabulary {
     pub main: Style,
     /// Local streets.
     pub local: Style,
+    /// Points along all its streets.
+    pub samples: Samples,
     /// Where growth begins in the example unless told otherwise.
     pub center: Vec2,
     /// Side of a square as large as a large block (the upper quartile), metres.
@@ -168,7 +171,8 @@ pub fn learn(city: &City, params: &Params) -> Result<Vocabulary, Error> {
     }
     let gates = exurb_city::laws::gates(city);
     let (center, large_block_m) = (center_of(&graph), large_block_m(&graph));
-    Ok(Vocabulary { name, main, local, center, large_block_m, gates })
+    let samples = Samples::of(graph.edges().map(|(id, e)| (e.line_m(), is_main[id.index()])));
+    Ok(Vocabulary { name, main, local, samples, center, large_block_m, gates })
 }
 
 /// Side of a square as large as the upper quartile of the blocks that are no islands.

@@ -26,6 +26,7 @@ mod edge;
 mod error;
 mod fill;
 mod finish;
+mod fit;
 mod growth;
 mod layer;
 mod learn;

@@ -104,7 +104,8 @@ pub fn begin(growth: &mut Growth, number: usize, start: &Start) {
             at = start.at;
         }
         let link = Some(style.layer.nodes[own].example);
-        let vertex = Vertex { link, start: number, ..Vertex::default() };
+        let piece = Some(growth.begin_piece(at));
+        let vertex = Vertex { link, start: number, piece, ..Vertex::default() };
         let node = growth.net.add_node(GridPoint::round(at), vertex);
         if placing::continuation(growth, node, own) {
             growth.queue.push_back(Place::Node(node));
