@@ -27,6 +27,7 @@ mod cut;
 mod densest_square;
 mod draft;
 mod edit;
+mod facades;
 pub mod feature;
 pub mod hierarchy;
 pub mod laws;
