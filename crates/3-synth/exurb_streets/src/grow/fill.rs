@@ -69,7 +69,6 @@ pub fn fill(growth: &mut Growth, empty_m: f64, run: &Run) -> Result<(), Error> {
 /// Lays a street from `edge` at `at` towards `place` and queues its end.
 fn set_out(growth: &mut Growth, edge: exurb_graph::EdgeId, at: Vec2, place: Vec2) {
     let e = growth.net.graph.edge(edge);
-    let start = growth.net.graph.node(e.from).data.start;
     let nearest_end = [e.from, e.to]
         .into_iter()
         .min_by(|a, b| {
@@ -81,13 +80,7 @@ fn set_out(growth: &mut Growth, edge: exurb_graph::EdgeId, at: Vec2, place: Vec2
     let node = if e.data.fixed || near < super::network::JOIN_M {
         nearest_end
     } else {
-        match growth.net.split(edge, GridPoint::round(at)) {
-            Some(node) => {
-                growth.net.graph.node_mut(node).data.start = start;
-                node
-            }
-            None => nearest_end,
-        }
+        growth.net.split(edge, GridPoint::round(at)).unwrap_or(nearest_end)
     };
     let direction = place - growth.net.graph.node(node).at.to_m();
     if let Some(direction) = direction.try_normalize() {

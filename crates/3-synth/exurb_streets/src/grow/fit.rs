@@ -8,6 +8,7 @@
 use exurb_geom::{GridPoint, PointIndex, Vec2, polyline};
 
 use super::growth::Growth;
+use super::network::Coherent;
 
 /// Streets of the example are looked at every so many metres.
 const STEP_M: f64 = 18.0;
@@ -69,19 +70,19 @@ impl Fit {
 }
 
 /// How the surroundings of the example's place `root` would lie with that on `at`.
-pub fn of(growth: &Growth, start: usize, root: Vec2, at: Vec2) -> Fit {
-    let samples = &growth.example(start).samples;
-    let shift = at - root;
+pub fn of(growth: &Growth, piece: Coherent, root: Vec2, at: Vec2) -> Fit {
+    let samples = &growth.plan.examples[piece.example].samples;
     let mut fit = Fit::default();
     samples.index.visit(root, LOOK_M, |id| {
         let sample = samples.points[id as usize];
-        let p = sample.at + shift;
+        let p = at + piece.motion.apply(sample.at - root);
         if growth.is_main && !sample.is_main || !growth.area.contains(GridPoint::round(p)) {
             return;
         }
         match growth.net.street_near(p, NEAR_M) {
             Some((distance, direction))
-                if distance < SAME_M && sample.direction.dot(direction).abs() > SAME_COSINE =>
+                if distance < SAME_M
+                    && piece.motion.apply(sample.direction).dot(direction).abs() > SAME_COSINE =>
             {
                 fit.same += 1;
             }

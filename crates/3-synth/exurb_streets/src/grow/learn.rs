@@ -21,6 +21,8 @@ use super::{detect, fill, prepare};
 pub struct Vocabulary {
     /// Name of the example, for `source`.
     pub name: Arc<str>,
+    /// Its share where examples are mixed.
+    pub weight: f64,
     /// Main streets.
     pub main: Style,
     /// Local streets.
@@ -172,7 +174,7 @@ pub fn learn(city: &City, params: &Params) -> Result<Vocabulary, Error> {
     let gates = exurb_city::laws::gates(city);
     let (center, large_block_m) = (center_of(&graph), large_block_m(&graph));
     let samples = Samples::of(graph.edges().map(|(id, e)| (e.line_m(), is_main[id.index()])));
-    Ok(Vocabulary { name, main, local, samples, center, large_block_m, gates })
+    Ok(Vocabulary { name, weight: 1.0, main, local, samples, center, large_block_m, gates })
 }
 
 /// Side of a square as large as the upper quartile of the blocks that are no islands.

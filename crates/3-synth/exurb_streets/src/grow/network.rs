@@ -8,6 +8,8 @@ use exurb_city::Street;
 use exurb_geom::{Bounds, GridPoint, PointIndex, SegmentIndex, Vec2, grid, polyline, trig};
 use exurb_graph::{Dart, EdgeId, Graph, NodeId};
 
+use super::plan::Motion;
+
 /// No two streets run nearer than this, but where they meet.
 pub const CLEARANCE_M: f64 = 7.0;
 /// Near a shared node clearance is not asked for: corners are judged by their angle.
@@ -30,8 +32,6 @@ pub struct Vertex {
     pub dead_end: bool,
     /// Lies at or beyond the edge of the grown area: not grown on, no dead end.
     pub outside: bool,
-    /// The start it grew from: tells the example.
-    pub start: usize,
     /// The copied piece it belongs to.
     pub piece: Option<Coherent>,
 }
@@ -39,6 +39,10 @@ pub struct Vertex {
 /// A piece of the example that is copied without a break.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coherent {
+    /// Number of the example.
+    pub example: usize,
+    /// How the example is moved.
+    pub motion: Motion,
     /// Where it began.
     pub origin: Vec2,
     /// How far from there growth follows the example.
@@ -274,12 +278,8 @@ impl Network {
             }
             Landing::Edge(edge, at) => {
                 line[last] = at;
-                let start = vertex.start;
                 match self.split(edge, at) {
-                    Some(node) => {
-                        self.graph.node_mut(node).data.start = start;
-                        node
-                    }
+                    Some(node) => node,
                     // The point rounds to an end of the edge.
                     None => {
                         let e = self.graph.edge(edge);
