@@ -12,6 +12,7 @@ use exurb_graph::{Dart, EdgeId, Face, Faces, Graph, NodeId, noding};
 use exurb_operation::{Rng, Run, rng};
 use rayon::prelude::*;
 
+use super::claims::Claims;
 use super::error::Error;
 use super::fill;
 use super::growth::{Growth, Place};
@@ -56,6 +57,7 @@ pub fn make_berths(net: &mut Network) {
 /// Grows local streets in every cell of `area` between the main streets of `main`.
 pub fn grow(
     main: &Network,
+    claims: &Claims,
     area: &Polygon,
     plan: &Plan,
     params: &Params,
@@ -75,7 +77,8 @@ pub fn grow(
         .map(|face| {
             let rng = cell_stream(face, run);
             let (net, seeds) = open_cell(main, &graph, &kinds, &at, face, plan, rng.clone());
-            let mut growth = Growth::new(net, plan, false, &face.polygon, params, rng);
+            let claims = claims.window(face.polygon.bounds());
+            let mut growth = Growth::new(net, plan, false, &face.polygon, params, claims, rng);
             growth.queue.extend(seeds);
             if main.graph.edge_count() == 0 {
                 for start in &plan.starts {

@@ -40,7 +40,7 @@ type Candidate = (f64, usize, ChainEnd, usize);
 pub fn draw(growth: &mut Growth, node: NodeId) -> bool {
     let at = growth.net.graph.node(node).at.to_m();
     let example = growth.plan.example_at(at);
-    let piece = growth.begin_piece(example, at);
+    let piece = growth.piece(example, at);
     let pieces: Vec<Coherent> = motions(growth.params, piece.motion)
         .into_iter()
         .map(|motion| Coherent { motion, ..piece })
@@ -51,16 +51,20 @@ pub fn draw(growth: &mut Growth, node: NodeId) -> bool {
     let unit_m = UNIT * growth.street_m(node);
     for (distance, _, end, motion) in &mut weighted {
         let root = style.layer.nodes[style.layer.tail(*end)].at;
-        let amiss = 1.0 - fit::of(growth, pieces[*motion], root, at).quality();
+        let piece = Coherent { source: root, ..pieces[*motion] };
+        let amiss = 1.0 - fit::of(growth, &piece).quality();
         *distance = trig::exp(-(*distance - least) / unit_m - amiss / FIT_UNIT);
     }
     for _ in 0..TRIES.min(weighted.len()) {
         let (_, patch, end, motion) = weighted.remove(pick(&weighted, growth));
-        let (root, piece) = (style.layer.tail(end), pieces[motion]);
+        let root = style.layer.tail(end);
+        let piece = Coherent { source: style.layer.nodes[root].at, ..pieces[motion] };
         if placing::place(growth, node, patch, root, piece) {
+            growth.begin(&piece);
             let vertex = &mut growth.net.graph.node_mut(node).data;
             vertex.link = Some(style.layer.nodes[root].example);
             vertex.piece = Some(piece);
+            placing::adopt(growth, end, piece);
             return true;
         }
     }
@@ -120,8 +124,7 @@ pub fn away(growth: &mut Growth, node: NodeId, direction: Vec2) {
     }
     let at = growth.net.graph.node(node).at.to_m();
     let example = growth.plan.example_at(at);
-    let piece = growth.begin_piece(example, at);
-    growth.net.graph.node_mut(node).data.piece = Some(piece);
+    let piece = growth.piece(example, at);
     let layer = &growth.style(example).layer;
     let wanted = piece.motion.undo(direction);
     let mut branches: Vec<Candidate> = Vec::new();
@@ -135,9 +138,14 @@ pub fn away(growth: &mut Growth, node: NodeId, direction: Vec2) {
     }
     for _ in 0..3.min(branches.len()) {
         let (_, _, end, _) = branches.remove(pick(&branches, growth));
-        let before = growth.net.graph.degree(node);
-        placing::branch(growth, node, end);
-        if growth.net.graph.degree(node) > before {
+        let source = layer.nodes[layer.tail(end)].at;
+        let piece = Coherent { source, ..piece };
+        let batch = growth.next_batch();
+        if let Some(laid) = placing::connector(growth, node, end, piece, batch) {
+            growth.begin(&piece);
+            if laid.is_whole {
+                growth.enqueue(laid.to);
+            }
             return;
         }
     }

@@ -48,7 +48,8 @@ pub fn fill(growth: &mut Growth, empty_m: f64, run: &Run) -> Result<(), Error> {
     for _ in 0..ROUNDS {
         let mut grew = false;
         for place in places(area, empty_m) {
-            if growth.net.edge_near(place, empty_m).is_some()
+            if growth.claims.owner(place).is_some()
+                || growth.net.edge_near(place, empty_m).is_some()
                 || area.boundary_distance_m(place) < empty_m * 0.3
             {
                 continue;

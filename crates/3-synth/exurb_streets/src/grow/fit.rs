@@ -69,13 +69,13 @@ impl Fit {
     }
 }
 
-/// How the surroundings of the example's place `root` would lie with that on `at`.
-pub fn of(growth: &Growth, piece: Coherent, root: Vec2, at: Vec2) -> Fit {
+/// How the surroundings of a piece's beginning would lie.
+pub fn of(growth: &Growth, piece: &Coherent) -> Fit {
     let samples = &growth.plan.examples[piece.example].samples;
     let mut fit = Fit::default();
-    samples.index.visit(root, LOOK_M, |id| {
+    samples.index.visit(piece.source, LOOK_M, |id| {
         let sample = samples.points[id as usize];
-        let p = at + piece.motion.apply(sample.at - root);
+        let p = piece.place(sample.at);
         if growth.is_main && !sample.is_main || !growth.area.contains(GridPoint::round(p)) {
             return;
         }
@@ -86,6 +86,8 @@ pub fn of(growth: &Growth, piece: Coherent, root: Vec2, at: Vec2) -> Fit {
             {
                 fit.same += 1;
             }
+            // On ground that another piece has claimed nothing will be laid.
+            _ if growth.claims.owner(p).is_some() => {}
             Some(_) => fit.amiss += 1,
             // The example's main streets have no place inside a cell.
             None if sample.is_main != growth.is_main => fit.amiss += 1,

@@ -16,6 +16,7 @@ use exurb_measure::statistics::StreetStatistics;
 use exurb_operation::{Rng, Run};
 use rand::RngExt;
 
+use super::claims::Claims;
 use super::error::Error;
 use super::layer::{ChainEnd, NodeKind};
 use super::learn::Style;
@@ -44,7 +45,9 @@ pub struct Growth<'a> {
     /// Places to grow on: those of the piece that is being copied.
     pub queue: VecDeque<Place>,
     /// Places where that piece ended and another may begin.
-    pub frontier: VecDeque<NodeId>,
+    pub frontier: VecDeque<Open>,
+    /// Which piece every place belongs to.
+    pub claims: Claims,
     batch: u32,
 }
 
@@ -55,6 +58,15 @@ pub struct Laid {
     pub to: NodeId,
     /// Did it come to its own end, a new node in the open?
     pub is_whole: bool,
+}
+
+/// A place where a piece ended.
+#[derive(Clone, Copy, Debug)]
+pub enum Open {
+    /// A node.
+    Node(NodeId),
+    /// A street that leaves the piece from a node.
+    Connector(NodeId, ChainEnd, Coherent),
 }
 
 /// A place to grow on.
@@ -76,10 +88,11 @@ impl<'a> Growth<'a> {
         is_main: bool,
         area: &'a Polygon,
         params: &'a Params,
+        claims: Claims,
         rng: Rng,
     ) -> Self {
         let (queue, frontier) = (VecDeque::new(), VecDeque::new());
-        Self { net, plan, is_main, area, params, rng, queue, frontier, batch: 1 }
+        Self { net, plan, is_main, area, params, rng, queue, frontier, claims, batch: 1 }
     }
 
     /// The layer's style in an example.
@@ -120,7 +133,8 @@ impl<'a> Growth<'a> {
                 Some(Place::Branch(node, end)) => placing::branch(self, node, end),
                 Some(Place::Away(node, direction)) => drawing::away(self, node, direction),
                 None => match self.frontier.pop_front() {
-                    Some(node) => self.break_off(node),
+                    Some(Open::Node(node)) => self.break_off(node),
+                    Some(Open::Connector(node, end, piece)) => self.leave(node, end, piece),
                     None => return Ok(()),
                 },
             }
@@ -136,7 +150,7 @@ impl<'a> Growth<'a> {
         }
         let at = at.to_m();
         if let (Some(piece), Some(link)) = (vertex.piece, vertex.link)
-            && piece.holds(at)
+            && self.holds(&piece, at)
             && piece.example == self.plan.example_at(at)
             && !self.rng.random_bool(self.params.procedural)
             && let Some(own) = self.style(piece.example).layer.of_example[link.index()]
@@ -144,7 +158,27 @@ impl<'a> Growth<'a> {
         {
             return;
         }
-        self.frontier.push_back(node);
+        self.frontier.push_back(Open::Node(node));
+    }
+
+    /// Lays a street that leaves its piece; where it ends in the open, another piece may begin.
+    fn leave(&mut self, node: NodeId, end: ChainEnd, piece: Coherent) {
+        let batch = self.next_batch();
+        if let Some(laid) = placing::connector(self, node, end, piece, batch)
+            && laid.is_whole
+            && !self.net.graph.node(laid.to).data.outside
+        {
+            self.break_off(laid.to);
+        }
+    }
+
+    /// Does the ground at `p` belong to `piece`, or does nobody claim it so near to the piece?
+    pub fn is_own(&mut self, piece: &Coherent, p: Vec2) -> bool {
+        // A piece that has not begun yet claims what it reaches.
+        match self.claims.owner(p) {
+            None => p.distance(piece.at) < piece.reach_m,
+            Some(owner) => owner == piece.id,
+        }
     }
 
     /// One turn where a piece ended.
@@ -165,13 +199,26 @@ impl<'a> Growth<'a> {
         procedural::expand(self, node);
     }
 
-    /// A piece of `example` that begins at `origin`. How far it reaches is drawn around
-    /// [`REACH_M`] · c / (1 - c), where c is the parameter `continuation`.
-    pub fn begin_piece(&mut self, example: usize, origin: Vec2) -> Coherent {
+    /// A piece of `example` that may begin at `at`; it claims nothing yet. How far it reaches is drawn
+    /// around [`REACH_M`] · c / (1 - c), where c is the parameter `continuation`.
+    pub fn piece(&mut self, example: usize, at: Vec2) -> Coherent {
         let c = self.params.continuation;
         let spread = self.rng.random_range(0.7..1.3);
         let reach_m = if c < 1.0 { REACH_M * c / (1.0 - c) * spread } else { f64::INFINITY };
-        Coherent { example, motion: self.plan.motion_at(origin, example), origin, reach_m }
+        let motion = self.plan.motion_at(at, example);
+        Coherent { id: self.claims.next_id(), example, motion, source: Vec2::ZERO, at, reach_m }
+    }
+
+    /// Claims ground for a piece that begins.
+    pub fn begin(&mut self, piece: &Coherent) {
+        let extent = &self.plan.examples[piece.example].extent;
+        self.claims.begin(piece, |p| extent.contains(GridPoint::round(piece.original(p))));
+    }
+
+    /// Does growth of `piece` go on at `p`?
+    pub fn holds(&mut self, piece: &Coherent, p: Vec2) -> bool {
+        let extent = &self.plan.examples[piece.example].extent;
+        self.claims.holds(piece, p, |p| extent.contains(GridPoint::round(piece.original(p))))
     }
 
     /// Queues a node that has just been made, unless it is to stay as it is.

@@ -20,6 +20,7 @@
 //! Units: metres, radians. Complexity: O(streets grown · streets nearby). Same seed, same streets.
 
 mod cells;
+mod claims;
 mod detect;
 mod drawing;
 mod edge;

@@ -39,20 +39,29 @@ pub struct Vertex {
 /// A piece of the example that is copied without a break.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coherent {
+    /// Its number in [`super::claims::Claims`].
+    pub id: u32,
     /// Number of the example.
     pub example: usize,
     /// How the example is moved.
     pub motion: Motion,
+    /// The place in the example that lies on `at`.
+    pub source: Vec2,
     /// Where it began.
-    pub origin: Vec2,
-    /// How far from there growth follows the example.
+    pub at: Vec2,
+    /// How far from there it reaches.
     pub reach_m: f64,
 }
 
 impl Coherent {
-    /// Does growth at `p` still follow the example?
-    pub fn holds(self, p: Vec2) -> bool {
-        p.distance(self.origin) < self.reach_m
+    /// Where the example's place `p` lies.
+    pub fn place(&self, p: Vec2) -> Vec2 {
+        self.at + self.motion.apply(p - self.source)
+    }
+
+    /// The place of the example that lies on `p`.
+    pub fn original(&self, p: Vec2) -> Vec2 {
+        self.source + self.motion.undo(p - self.at)
     }
 }
 

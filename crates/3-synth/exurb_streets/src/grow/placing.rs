@@ -5,13 +5,15 @@ use std::collections::BTreeMap;
 use exurb_geom::{GridPoint, Vec2};
 use exurb_graph::NodeId;
 
-use super::growth::Growth;
-use super::layer::ChainEnd;
+use super::growth::{Growth, Laid, Open};
+use super::layer::{ChainEnd, NodeKind};
 use super::network::{Coherent, JOIN_M, Vertex, Wish};
 use super::patch::Patch;
 
 /// Copies that come to lie this near to an existing node are that node.
 const SAME_M: f64 = 1.0;
+/// Side streets of a connector are moved by at most this to the street that it is copied onto.
+const ADOPTED_M: f64 = 25.0;
 /// Angle under which an edge of a patch repeats one that is there, in radians.
 const REDUNDANT_RAD: f64 = 0.3;
 /// Edges of the patch may meet others at a sharper angle than procedural ones: the example's own.
@@ -30,26 +32,71 @@ pub fn continuation(growth: &mut Growth, node: NodeId, piece: Coherent, own: usi
 /// to, and lets growth go on at its other end.
 pub fn branch(growth: &mut Growth, node: NodeId, end: ChainEnd) {
     let Some(n) = growth.net.graph.get_node(node) else { return };
-    let (at, Some(coherent)) = (n.at.to_m(), n.data.piece) else { return };
-    let style = growth.style(coherent.example);
-    let line = style.layer.line(end);
-    let line = coherent.motion.lay(&line, line[0], at);
-    let far = style.layer.head(end);
-    let vertex = growth.copy_of(far, coherent);
-    let part = match style.layer.nodes[far].patch {
-        Some(patch) => style.patches[patch].label.clone(),
-        None => "between main streets".into(),
-    };
+    let (Some(coherent), at) = (n.data.piece, n.at.to_m()) else { return };
+    if !growth.holds(&coherent, at) {
+        return;
+    }
     let batch = growth.next_batch();
-    let street = &style.layer.chains[end.chain].street;
-    let piece = growth.copied(street, coherent.example, &part, batch);
-    let dead_end = vertex.dead_end;
-    let wish = Wish { least_angle_rad: PATCH_ANGLE_RAD, dead_end, ..Wish::free(batch) };
-    if let Some(laid) = growth.lay(node, &line, wish, piece, vertex, &[])
+    if let Some(laid) = connector(growth, node, end, coherent, batch)
         && laid.is_whole
     {
         growth.enqueue(laid.to);
     }
+}
+
+/// Makes the side streets along the connector by which a piece was chosen begin on the street that
+/// arrived, where it runs through the piece's own ground.
+pub fn adopt(growth: &mut Growth, end: ChainEnd, piece: Coherent) {
+    let layer = &growth.style(piece.example).layer;
+    let line = layer.line(end);
+    for (i, link) in layer.via(end) {
+        let p = piece.place(line[i]);
+        let Some((edge, at)) = growth.net.edge_near(p, ADOPTED_M) else { continue };
+        if !growth.holds(&piece, at) || growth.net.graph.edge(edge).data.fixed {
+            continue;
+        }
+        if let Some(middle) = growth.net.split(edge, GridPoint::round(at)) {
+            let data = &mut growth.net.graph.node_mut(middle).data;
+            (data.link, data.piece) = (Some(link), Some(piece));
+        }
+    }
+}
+
+/// Lays the connector or dead end `end` of `coherent` from `node`, as far as it gets.
+pub fn connector(
+    growth: &mut Growth,
+    node: NodeId,
+    end: ChainEnd,
+    coherent: Coherent,
+    batch: u32,
+) -> Option<Laid> {
+    let at = growth.net.graph.get_node(node)?.at.to_m();
+    let style = growth.style(coherent.example);
+    let layer = &style.layer;
+    let line = layer.line(end);
+    let line = coherent.motion.lay(&line, line[0], at);
+    if growth.net.angle_at(node, &line, batch) < REDUNDANT_RAD {
+        return None;
+    }
+    let vertex = growth.copy_of(layer.head(end), coherent);
+    let owner = [layer.tail(end), layer.head(end)].into_iter().find_map(|n| layer.nodes[n].patch);
+    let part = match owner {
+        Some(patch) => style.patches[patch].label.clone(),
+        None => "between main streets".into(),
+    };
+    let piece = growth.copied(&layer.chains[end.chain].street, coherent.example, &part, batch);
+    let via = layer.via(end);
+    let dead_end = vertex.dead_end;
+    let wish = Wish { least_angle_rad: PATCH_ANGLE_RAD, dead_end, ..Wish::free(batch) };
+    let exists = growth.net.node_near(line[line.len() - 1], SAME_M, Some(node));
+    if exists.is_some() {
+        let wish = Wish { to: exists, ..wish };
+        let laid = growth.lay(node, &line, wish, piece.clone(), vertex.clone(), &via);
+        if laid.is_some() {
+            return laid;
+        }
+    }
+    growth.lay(node, &line, wish, piece, vertex, &via)
 }
 
 /// Places `patch` with its core node `root` on `node` as part of `coherent`. Inner chains lie as in the example or the
@@ -96,25 +143,14 @@ pub fn place(
 
     for &end in &patch.outer {
         let Some(Some(from)) = nodes.get(&layer.tail(end)).copied() else { continue };
-        let line = copy.line(&layer.line(end));
-        if growth.net.angle_at(from, &line, batch) < REDUNDANT_RAD {
-            continue;
-        }
-        let far = layer.head(end);
-        let vertex = growth.copy_of(far, coherent);
-        let street = &layer.chains[end.chain].street;
-        let piece = growth.copied(street, coherent.example, &patch.label, batch);
-        let via = layer.via(end);
-        let dead_end = vertex.dead_end;
-        let wish = Wish { least_angle_rad: PATCH_ANGLE_RAD, dead_end, ..Wish::free(batch) };
-        let exists = growth.net.node_near(line[line.len() - 1], SAME_M, Some(from));
-        let wish = if exists.is_some() { Wish { to: exists, ..wish } } else { wish };
-        let result =
-            growth.lay(from, &line, wish, piece.clone(), vertex.clone(), &via).or_else(|| {
-                exists?;
-                growth.lay(from, &line, Wish { to: None, ..wish }, piece, vertex, &via)
-            });
-        if let Some(line) = result {
+        let far = &layer.nodes[layer.head(end)];
+        let place = copy.place(far.at);
+        let leaves = far.kind == NodeKind::Junction && !growth.is_own(&coherent, place);
+        if leaves && growth.net.node_near(place, SAME_M, None).is_none() {
+            // The street leaves the piece: it waits until it is known what lies there.
+            growth.frontier.push_back(Open::Connector(from, end, coherent));
+            laid = true;
+        } else if let Some(line) = connector(growth, from, end, coherent, batch) {
             laid = true;
             if line.is_whole {
                 growth.enqueue(line.to);

@@ -8,9 +8,10 @@ use exurb_graph::{Graph, NodeId};
 use exurb_operation::Run;
 
 use super::cells::{self, Grown};
+use super::claims::Claims;
 use super::error::Error;
 use super::growth::{Growth, Place};
-use super::network::{Network, Piece, Vertex};
+use super::network::{Coherent, Network, Piece, Vertex};
 use super::params::Params;
 use super::placing;
 use super::plan::{Plan, Start};
@@ -32,14 +33,14 @@ pub fn synthesize(
     let area = grown.first().unwrap_or(target);
 
     run.phase("main streets");
-    let mut main = grow_main(plan, area, params, run)?;
+    let (mut main, claims) = grow_main(plan, area, params, run)?;
     if params.remove_dangling {
         remove_open_ends(&mut main, plan);
     }
     cells::make_berths(&mut main);
 
     run.phase("local streets");
-    let local = cells::grow(&main, area, plan, params, run)?;
+    let local = cells::grow(&main, &claims, area, plan, params, run)?;
 
     run.phase("finish");
     let graph = join(main, local);
@@ -62,10 +63,16 @@ fn dead_end_share(plan: &Plan) -> Option<f64> {
     (total > 0.0).then(|| sum / total)
 }
 
-fn grow_main(plan: &Plan, area: &Polygon, params: &Params, run: &Run) -> Result<Network, Error> {
+fn grow_main(
+    plan: &Plan,
+    area: &Polygon,
+    params: &Params,
+    run: &Run,
+) -> Result<(Network, Claims), Error> {
     let first = plan.example_at(area.interior_point());
     let net = Network::new(plan.statistics(first, true).length_mean_m);
-    let mut growth = Growth::new(net, plan, true, area, params, run.stream(0));
+    let claims = Claims::new(area.bounds());
+    let mut growth = Growth::new(net, plan, true, area, params, claims, run.stream(0));
     for start in &plan.starts {
         begin(&mut growth, start);
     }
@@ -73,7 +80,7 @@ fn grow_main(plan: &Plan, area: &Polygon, params: &Params, run: &Run) -> Result<
     if growth.net.graph.edge_count() > 0 {
         fill::fill(&mut growth, plan.examples[first].main.empty_m, run)?;
     }
-    Ok(growth.net)
+    Ok((growth.net, growth.claims))
 }
 
 /// Begins growth at a start: the first of the nearest junctions of the example whose patch can lie
@@ -89,10 +96,12 @@ pub fn begin(growth: &mut Growth, start: &Start) {
             at = start.at;
         }
         let link = Some(style.layer.nodes[own].example);
-        let piece = growth.begin_piece(start.example, at);
+        let source = style.layer.nodes[own].at;
+        let piece = Coherent { source, ..growth.piece(start.example, at) };
         let vertex = Vertex { link, piece: Some(piece), ..Vertex::default() };
         let node = growth.net.add_node(GridPoint::round(at), vertex);
         if placing::continuation(growth, node, piece, own) {
+            growth.begin(&piece);
             growth.queue.push_back(Place::Node(node));
             return;
         }
