@@ -14,9 +14,13 @@ use super::plan::Motion;
 use super::{fit, placing, procedural};
 
 /// Connectors compared at least; more, if they lie as near.
-const COMPARED: usize = 48;
+const COMPARED: usize = 96;
+/// What a waiting street that goes on in the patch's surroundings adds to the exponent, and what one
+/// that does not takes away.
+const MET_GAIN: f64 = 1.5;
+const MISSED_LOSS: f64 = 0.5;
 /// Patches whose surroundings are looked at.
-const LOOKED_AT: usize = 24;
+const LOOKED_AT: usize = 96;
 /// Patches tried before growth falls back to statistics.
 const TRIES: usize = 6;
 /// The unit of the distance in eq. (2) as a share of the mean length of a street. The printed unit,
@@ -53,7 +57,9 @@ pub fn draw(growth: &mut Growth, node: NodeId) -> bool {
         let root = style.layer.nodes[style.layer.tail(*end)].at;
         let piece = Coherent { source: root, ..pieces[*motion] };
         let amiss = 1.0 - fit::of(growth, &piece).quality();
-        *distance = trig::exp(-(*distance - least) / unit_m - amiss / FIT_UNIT);
+        let (met, missed) = fit::met(growth, &piece);
+        let gain = MET_GAIN * f64::from(met) - MISSED_LOSS * f64::from(missed);
+        *distance = trig::exp(-(*distance - least) / unit_m - amiss / FIT_UNIT + gain);
     }
     for _ in 0..TRIES.min(weighted.len()) {
         let (_, patch, end, motion) = weighted.remove(pick(&weighted, growth));

@@ -23,7 +23,8 @@ use super::learn::Style;
 use super::network::{Coherent, Landing, Network, Piece, Vertex, Wish};
 use super::params::Params;
 use super::plan::Plan;
-use super::{drawing, placing, procedural};
+use super::seams::{Leaving, Seams};
+use super::{drawing, placing, procedural, seams};
 
 /// How far a copied piece reaches with a `continuation` of one half, in metres.
 const REACH_M: f64 = 250.0;
@@ -46,6 +47,8 @@ pub struct Growth<'a> {
     pub queue: VecDeque<Place>,
     /// Places where that piece ended and another may begin.
     pub frontier: VecDeque<Open>,
+    /// Streets that leave their pieces.
+    pub seams: Seams,
     /// Which piece every place belongs to.
     pub claims: Claims,
     batch: u32,
@@ -65,8 +68,8 @@ pub struct Laid {
 pub enum Open {
     /// A node.
     Node(NodeId),
-    /// A street that leaves the piece from a node.
-    Connector(NodeId, ChainEnd, Coherent),
+    /// A street that leaves the piece, by its number in [`Growth::seams`].
+    Street(usize),
 }
 
 /// A place to grow on.
@@ -92,7 +95,8 @@ impl<'a> Growth<'a> {
         rng: Rng,
     ) -> Self {
         let (queue, frontier) = (VecDeque::new(), VecDeque::new());
-        Self { net, plan, is_main, area, params, rng, queue, frontier, claims, batch: 1 }
+        let seams = Seams::new();
+        Self { net, plan, is_main, area, params, rng, queue, frontier, seams, claims, batch: 1 }
     }
 
     /// The layer's style in an example.
@@ -134,7 +138,11 @@ impl<'a> Growth<'a> {
                 Some(Place::Away(node, direction)) => drawing::away(self, node, direction),
                 None => match self.frontier.pop_front() {
                     Some(Open::Node(node)) => self.break_off(node),
-                    Some(Open::Connector(node, end, piece)) => self.leave(node, end, piece),
+                    Some(Open::Street(number)) => {
+                        if let Some(leaving) = self.seams.take(number) {
+                            seams::leave(self, leaving);
+                        }
+                    }
                     None => return Ok(()),
                 },
             }
@@ -161,15 +169,10 @@ impl<'a> Growth<'a> {
         self.frontier.push_back(Open::Node(node));
     }
 
-    /// Lays a street that leaves its piece; where it ends in the open, another piece may begin.
-    fn leave(&mut self, node: NodeId, end: ChainEnd, piece: Coherent) {
-        let batch = self.next_batch();
-        if let Some(laid) = placing::connector(self, node, end, piece, batch)
-            && laid.is_whole
-            && !self.net.graph.node(laid.to).data.outside
-        {
-            self.break_off(laid.to);
-        }
+    /// Lets a street wait that leaves its piece.
+    pub fn let_wait(&mut self, leaving: Leaving) {
+        let number = self.seams.push(leaving);
+        self.frontier.push_back(Open::Street(number));
     }
 
     /// Does the ground at `p` belong to `piece`, or does nobody claim it so near to the piece?
@@ -182,7 +185,7 @@ impl<'a> Growth<'a> {
     }
 
     /// One turn where a piece ended.
-    fn break_off(&mut self, node: NodeId) {
+    pub fn break_off(&mut self, node: NodeId) {
         let Some(n) = self.net.graph.get_node(node) else { return };
         let is_linked = n.data.link.is_some();
         let degree = self.net.graph.degree(node);

@@ -38,6 +38,7 @@ mod placing;
 mod plan;
 mod prepare;
 mod procedural;
+mod seams;
 mod starts;
 mod synthesize;
 #[cfg(test)]

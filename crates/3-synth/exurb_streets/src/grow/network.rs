@@ -577,7 +577,7 @@ fn meet(a: Vec2, b: Vec2, c: Vec2, d: Vec2) -> Option<(f64, Vec2)> {
 
 /// Moves the end of `line` to `end`; the shift fades out towards the start, over at most the last
 /// 60 m and at least four times its own length where the line has it.
-fn bend(line: &[Vec2], end: Vec2) -> Vec<Vec2> {
+pub fn bend(line: &[Vec2], end: Vec2) -> Vec<Vec2> {
     let total = polyline::length(line);
     let shift = end - line[line.len() - 1];
     if shift.length() < 1e-9 {

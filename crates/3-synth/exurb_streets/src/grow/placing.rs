@@ -1,14 +1,16 @@
 //! Copying patches: continuation, branches, and the placing of one patch.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use exurb_geom::{GridPoint, Vec2};
 use exurb_graph::NodeId;
 
-use super::growth::{Growth, Laid, Open};
+use super::growth::{Growth, Laid};
 use super::layer::{ChainEnd, NodeKind};
 use super::network::{Coherent, JOIN_M, Vertex, Wish};
 use super::patch::Patch;
+use super::seams;
 
 /// Copies that come to lie this near to an existing node are that node.
 const SAME_M: f64 = 1.0;
@@ -41,6 +43,16 @@ pub fn branch(growth: &mut Growth, node: NodeId, end: ChainEnd) {
         && laid.is_whole
     {
         growth.enqueue(laid.to);
+    }
+}
+
+/// The patch that a chain belongs to, for provenance.
+pub fn part_of(growth: &Growth, end: ChainEnd, example: usize) -> Arc<str> {
+    let style = growth.style(example);
+    let ends = [style.layer.tail(end), style.layer.head(end)];
+    match ends.into_iter().find_map(|n| style.layer.nodes[n].patch) {
+        Some(patch) => style.patches[patch].label.clone(),
+        None => "between main streets".into(),
     }
 }
 
@@ -79,11 +91,7 @@ pub fn connector(
         return None;
     }
     let vertex = growth.copy_of(layer.head(end), coherent);
-    let owner = [layer.tail(end), layer.head(end)].into_iter().find_map(|n| layer.nodes[n].patch);
-    let part = match owner {
-        Some(patch) => style.patches[patch].label.clone(),
-        None => "between main streets".into(),
-    };
+    let part = part_of(growth, end, coherent.example);
     let piece = growth.copied(&layer.chains[end.chain].street, coherent.example, &part, batch);
     let via = layer.via(end);
     let dead_end = vertex.dead_end;
@@ -148,7 +156,7 @@ pub fn place(
         let leaves = far.kind == NodeKind::Junction && !growth.is_own(&coherent, place);
         if leaves && growth.net.node_near(place, SAME_M, None).is_none() {
             // The street leaves the piece: it waits until it is known what lies there.
-            growth.frontier.push_back(Open::Connector(from, end, coherent));
+            seams::wait(growth, from, end, coherent);
             laid = true;
         } else if let Some(line) = connector(growth, from, end, coherent, batch) {
             laid = true;
