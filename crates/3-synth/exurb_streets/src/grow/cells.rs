@@ -20,7 +20,7 @@ use super::layer::NodeKind;
 use super::network::{Network, Piece, Vertex};
 use super::params::Params;
 use super::plan::Plan;
-use super::synthesize;
+use super::{synthesize, unreached};
 
 /// Distance between the nodes of a main street where local streets may end.
 const BERTH_M: f64 = 18.0;
@@ -86,6 +86,7 @@ pub fn grow(
                 }
             }
             growth.run(run)?;
+            unreached::lay(&mut growth, run)?;
             let example = plan.example_at(face.polygon.interior_point());
             fill::fill(&mut growth, plan.examples[example].local.empty_m, run)?;
             Ok(harvest(&growth.net))

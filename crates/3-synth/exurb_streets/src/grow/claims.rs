@@ -25,7 +25,8 @@ pub struct Claims {
     rows: usize,
     /// Number of the piece, 0 for none; row by row from the south-west.
     owners: Vec<u32>,
-    next: u32,
+    /// The pieces, by number from 1.
+    pieces: Vec<Option<Coherent>>,
 }
 
 impl Claims {
@@ -33,12 +34,13 @@ impl Claims {
     pub fn new(bounds: Bounds) -> Self {
         let size = (bounds.size() / CELL_M).ceil().max(Vec2::ONE);
         let (columns, rows) = (size.x as usize, size.y as usize);
-        Self { min: bounds.min, columns, rows, owners: vec![0; columns * rows], next: 1 }
+        let (owners, pieces) = (vec![0; columns * rows], vec![None]);
+        Self { min: bounds.min, columns, rows, owners, pieces }
     }
 
     /// The part of these claims in `bounds`; what is claimed in it further does not count here.
     pub fn window(&self, bounds: Bounds) -> Self {
-        let mut part = Self { next: self.next, ..Self::new(bounds) };
+        let mut part = Self { pieces: self.pieces.clone(), ..Self::new(bounds) };
         for i in 0..part.owners.len() {
             part.owners[i] = self.owner(part.center(i)).unwrap_or(0);
         }
@@ -47,8 +49,25 @@ impl Claims {
 
     /// The number of the next piece.
     pub fn next_id(&mut self) -> u32 {
-        self.next += 1;
-        self.next - 1
+        self.pieces.push(None);
+        self.pieces.len() as u32 - 1
+    }
+
+    /// The pieces that claim ground here, in order of their numbers.
+    pub fn pieces_here(&self) -> Vec<Coherent> {
+        let mut is_here = vec![false; self.pieces.len()];
+        for owner in &self.owners {
+            is_here[*owner as usize] = true;
+        }
+        let here = self.pieces.iter().zip(is_here).filter(|(_, is_here)| *is_here);
+        here.filter_map(|(piece, _)| *piece).collect()
+    }
+
+    /// No ground of `piece` lies farther than this from its beginning.
+    pub fn reach_m(&self, piece: &Coherent) -> f64 {
+        let far = (self.columns + self.rows) as f64 * CELL_M;
+        let from_here = (self.min - piece.at).abs().max_element() + far;
+        (STRETCH * piece.reach_m + STEP_M).min(from_here)
     }
 
     /// The piece that `p` belongs to.
@@ -58,6 +77,7 @@ impl Claims {
 
     /// Claims the free ground that `piece` reaches from its origin and that `may_have` accepts.
     pub fn begin(&mut self, piece: &Coherent, may_have: impl Fn(Vec2) -> bool) {
+        self.pieces[piece.id as usize] = Some(*piece);
         let far = (self.columns + self.rows) as f64 * CELL_M;
         self.claim(piece.id, piece.at, piece.reach_m.min(far), may_have);
     }

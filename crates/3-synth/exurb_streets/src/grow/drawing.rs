@@ -19,6 +19,8 @@ const COMPARED: usize = 96;
 /// that does not takes away.
 const MET_GAIN: f64 = 1.5;
 const MISSED_LOSS: f64 = 0.5;
+/// What streets of one grain add to the exponent.
+const GRAIN_GAIN: f64 = 4.0;
 /// Patches whose surroundings are looked at.
 const LOOKED_AT: usize = 96;
 /// Patches tried before growth falls back to statistics.
@@ -58,7 +60,8 @@ pub fn draw(growth: &mut Growth, node: NodeId) -> bool {
         let piece = Coherent { source: root, ..pieces[*motion] };
         let amiss = 1.0 - fit::of(growth, &piece).quality();
         let (met, missed) = fit::met(growth, &piece);
-        let gain = MET_GAIN * f64::from(met) - MISSED_LOSS * f64::from(missed);
+        let grain = GRAIN_GAIN * fit::grain(growth, &piece);
+        let gain = grain + MET_GAIN * f64::from(met) - MISSED_LOSS * f64::from(missed);
         *distance = trig::exp(-(*distance - least) / unit_m - amiss / FIT_UNIT + gain);
     }
     for _ in 0..TRIES.min(weighted.len()) {

@@ -20,6 +20,8 @@ const NEAR_M: f64 = 22.0;
 const SAME_COSINE: f64 = 0.94;
 /// How far around its root a piece is looked at, in metres.
 const LOOK_M: f64 = 160.0;
+/// The grain is that of the streets within so many metres.
+const GRAIN_M: f64 = 200.0;
 /// Waiting streets are looked at up to this, in metres; they go on in a street at most so far beside
 /// them and turned by at most so much (18°).
 const MET_WITHIN_M: f64 = 300.0;
@@ -72,6 +74,27 @@ impl Fit {
         let total = f64::from(self.same + self.open + self.amiss);
         if total == 0.0 { 0.5 } else { 1.0 - f64::from(self.amiss) / total }
     }
+}
+
+/// How well the grain of the streets around a piece's beginning agrees with that of the streets that
+/// are there: 1 when both run in the same two directions, -1 when they cross at half a right angle, near
+/// 0 where one of them has no grain.
+pub fn grain(growth: &Growth, piece: &Coherent) -> f64 {
+    let there = growth.net.grain_near(piece.at, GRAIN_M);
+    let samples = &growth.plan.examples[piece.example].samples;
+    let mut own = Vec2::ZERO;
+    let mut count = 0.0;
+    samples.index.visit(piece.source, GRAIN_M, |id| {
+        own += fourfold(piece.motion.apply(samples.points[id as usize].direction));
+        count += 1.0;
+    });
+    if count > 0.0 { there.dot(own / count) } else { 0.0 }
+}
+
+/// A direction with its angle multiplied by four, so that those at right angles are one; a unit vector.
+pub fn fourfold(direction: Vec2) -> Vec2 {
+    let double = direction.rotate(direction);
+    double.rotate(double).normalize_or_zero()
 }
 
 /// Waiting streets that lead onto a piece's ground, as far as it is looked at: how many would go on in

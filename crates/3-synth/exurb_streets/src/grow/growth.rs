@@ -29,6 +29,9 @@ use super::{drawing, placing, procedural, seams};
 /// How far a copied piece reaches with a `continuation` of one half, in metres.
 const REACH_M: f64 = 250.0;
 
+/// Streets that no piece holds keep this many times the example's spacing from others.
+const SPACING: f64 = 1.2;
+
 /// Growth of one layer.
 pub struct Growth<'a> {
     /// The network grown into.
@@ -309,6 +312,22 @@ impl<'a> Growth<'a> {
         let on_border =
             self.net.graph.darts(node).iter().any(|d| self.net.graph.edge(d.edge()).data.fixed);
         on_border && !self.area.contains(GridPoint::round(polyline::point_at(line, 0.5)))
+    }
+
+    /// Does a line keep so far from other streets that no block becomes narrower than the example's?
+    /// Towards its ends it may come nearer.
+    pub fn keeps_spacing(&self, node: NodeId, line: &[Vec2]) -> bool {
+        let n = self.net.graph.node(node);
+        let own = n.data.piece.map(|piece| piece.example);
+        let example = own.unwrap_or_else(|| self.plan.example_at(n.at.to_m()));
+        let spacing_m = SPACING * self.style(example).spacing_m;
+        let total = polyline::length(line);
+        let count = (total / 12.0).ceil();
+        (1..count as usize).all(|i| {
+            let along = total * i as f64 / count;
+            let wanted = spacing_m.min(0.6 * along.min(total - along));
+            self.net.street_near(polyline::point_at(line, along), wanted).is_none()
+        })
     }
 
     /// Is a free place there: nothing in the way on the first metres of this direction?

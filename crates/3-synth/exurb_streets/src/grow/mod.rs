@@ -43,6 +43,7 @@ mod starts;
 mod synthesize;
 #[cfg(test)]
 mod tests;
+mod unreached;
 
 use std::sync::Arc;
 

@@ -8,6 +8,7 @@ use exurb_city::Street;
 use exurb_geom::{Bounds, GridPoint, PointIndex, SegmentIndex, Vec2, grid, polyline, trig};
 use exurb_graph::{Dart, EdgeId, Graph, NodeId};
 
+use super::fit::fourfold;
 use super::plan::Motion;
 
 /// No two streets run nearer than this, but where they meet.
@@ -208,6 +209,21 @@ impl Network {
             true
         });
         best.map(|(_, id, q)| (EdgeId(id), q))
+    }
+
+    /// The mean of the directions of streets near `p`, each with its angle multiplied by four: long
+    /// where they run in two directions at right angles, short where they run anyhow.
+    pub fn grain_near(&self, p: Vec2, radius_m: f64) -> Vec2 {
+        let (mut sum, mut total) = (Vec2::ZERO, 0.0);
+        self.segments.visit(Bounds { min: p - radius_m, max: p + radius_m }, |e| {
+            if !self.graph.edge(EdgeId(e.id)).data.rim {
+                let length = e.a.distance(e.b);
+                sum += fourfold((e.b - e.a) / length.max(1e-9)) * length;
+                total += length;
+            }
+            true
+        });
+        if total > 0.0 { sum / total } else { Vec2::ZERO }
     }
 
     /// Distance and direction of the nearest street within `radius_m` of `p`.

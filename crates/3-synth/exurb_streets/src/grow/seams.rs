@@ -10,7 +10,7 @@ use exurb_graph::NodeId;
 
 use super::growth::Growth;
 use super::layer::ChainEnd;
-use super::network::{Coherent, Landing, Wish, bend};
+use super::network::{Coherent, Landing, Piece, Wish, bend};
 use super::placing;
 
 /// Streets that leave their pieces this near to each other may be joined, in metres.
@@ -23,6 +23,10 @@ const STEP_M: f64 = 10.0;
 /// this, in metres; it meets others at this angle at least.
 const BEYOND_M: f64 = 300.0;
 const LEAST_ANGLE_RAD: f64 = 0.7;
+/// A street that would end this near to a junction of three ends in it, in metres.
+const JUNCTION_M: f64 = 32.0;
+/// Two streets make a bend when the cosine between them is above this (145°).
+const BEND_COSINE: f64 = -0.82;
 
 /// A street that leaves its piece from a node.
 #[derive(Clone, Copy, Debug)]
@@ -166,24 +170,65 @@ fn joined_line(growth: &Growth, one: &Leaving, other: &Leaving) -> Option<Vec<Ve
     Some(line)
 }
 
-/// Leads a street on to the first one it meets on foreign ground, straight ahead or a little to a side.
+/// Leads a street on to the first one it meets on foreign ground, straight ahead or a little to a side:
+/// to a junction there, where one is near, else to the street.
 fn go_on(growth: &mut Growth, leaving: &Leaving) {
     let line = line_of(growth, leaving.node, leaving.end, &leaving.piece);
     let (last, before) = (line[line.len() - 1], line[line.len() - 2]);
     let ahead = (last - before).normalize_or_zero() * growth.street_m(leaving.node).min(BEYOND_M);
     let wish = Wish { least_angle_rad: LEAST_ANGLE_RAD, ..Wish::free(0) };
+    // Without this street there would be a bend where the example has a junction.
+    let is_needed = leaves_bend(growth, leaving.node);
     for turn in [0.0, 0.15, -0.15, 0.3, -0.3, 0.5, -0.5] {
         let mut line = line.clone();
         line.push(last + trig::rotate(ahead, turn));
-        let probe = growth.net.probe(leaving.node, &line, wish);
-        if probe.is_none_or(|probe| probe.landing == Landing::Free) {
+        let Some(probe) = growth.net.probe(leaving.node, &line, wish) else { continue };
+        if probe.landing == Landing::Free
+            || !is_needed && !growth.keeps_spacing(leaving.node, &probe.line)
+        {
             continue;
         }
         let layer = &growth.style(leaving.piece.example).layer;
         let street = &layer.chains[leaving.end.chain].street;
         let part = placing::part_of(growth, leaving.end, leaving.piece.example);
         let street = growth.copied(street, leaving.piece.example, &part, 0);
+        if let Landing::Edge(..) = probe.landing
+            && to_junction(growth, leaving.node, &probe.line, wish, &street)
+        {
+            return;
+        }
         growth.lay(leaving.node, &line, wish, street, Default::default(), &[]);
         return;
     }
+}
+
+/// Would the node be a bend of one street, or an end, as it is?
+fn leaves_bend(growth: &Growth, node: NodeId) -> bool {
+    match growth.net.graph.darts(node) {
+        [] | [_] => true,
+        [a, b] => {
+            let [u, v] = [a, b].map(|d| growth.net.graph.direction(*d, 15.0));
+            u.dot(v) > BEND_COSINE
+        }
+        _ => false,
+    }
+}
+
+/// Leads a line that would end on a street to a junction of three streets nearby instead.
+fn to_junction(
+    growth: &mut Growth,
+    from: NodeId,
+    line: &[Vec2],
+    wish: Wish,
+    street: &Piece,
+) -> bool {
+    let end = line[line.len() - 1];
+    let near: Vec<NodeId> = growth.net.nodes_near(end, JUNCTION_M).collect();
+    near.into_iter().filter(|n| *n != from).any(|node| {
+        growth.net.graph.degree(node) == 3 && {
+            let bent = bend(line, growth.net.graph.node(node).at.to_m());
+            let wish = Wish { to: Some(node), ..wish };
+            growth.lay(from, &bent, wish, street.clone(), Default::default(), &[]).is_some()
+        }
+    })
 }

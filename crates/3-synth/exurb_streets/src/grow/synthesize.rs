@@ -15,7 +15,7 @@ use super::network::{Coherent, Network, Piece, Vertex};
 use super::params::Params;
 use super::placing;
 use super::plan::{Plan, Start};
-use super::{fill, finish};
+use super::{fill, finish, unreached};
 
 /// Growth goes on beyond the target by a large block of the example, so that blocks at its edge close
 /// and its edge looks like its middle; by no more and no less than this.
@@ -77,6 +77,7 @@ fn grow_main(
         begin(&mut growth, start);
     }
     growth.run(run)?;
+    unreached::lay(&mut growth, run)?;
     if growth.net.graph.edge_count() > 0 {
         fill::fill(&mut growth, plan.examples[first].main.empty_m, run)?;
     }
