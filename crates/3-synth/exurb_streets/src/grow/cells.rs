@@ -77,7 +77,7 @@ pub fn grow(
         .map(|face| {
             let rng = cell_stream(face, run);
             let (net, seeds) = open_cell(main, &graph, &kinds, &at, face, plan, rng.clone());
-            let claims = claims.window(face.polygon.bounds());
+            let claims = claims.window(&face.polygon);
             let mut growth = Growth::new(net, plan, false, &face.polygon, params, claims, rng);
             growth.queue.extend(seeds);
             if main.graph.edge_count() == 0 {

@@ -6,7 +6,7 @@
 //! meet its own, but nothing of theirs grows on. So every place has the streets, and the emptiness, of
 //! one place of the example.
 
-use exurb_geom::{Bounds, Vec2};
+use exurb_geom::{Bounds, Polygon, Vec2};
 
 use super::network::Coherent;
 
@@ -16,6 +16,8 @@ const CELL_M: f64 = 20.0;
 const STEP_M: f64 = 60.0;
 /// And it does so up to this many times its reach.
 const STRETCH: f64 = 1.5;
+/// Stands in the grid for what lies outside the area.
+const OUTSIDE: u32 = u32::MAX;
 
 /// Claimed ground on a grid.
 #[derive(Clone, Debug)]
@@ -23,28 +25,61 @@ pub struct Claims {
     min: Vec2,
     columns: usize,
     rows: usize,
-    /// Number of the piece, 0 for none; row by row from the south-west.
+    /// Number of the piece, 0 for none, or [`OUTSIDE`]; row by row from the south-west.
     owners: Vec<u32>,
     /// The pieces, by number from 1.
     pieces: Vec<Option<Coherent>>,
 }
 
 impl Claims {
-    /// Free ground.
-    pub fn new(bounds: Bounds) -> Self {
+    /// Free ground inside `area`.
+    pub fn new(area: &Polygon) -> Self {
+        let mut claims = Self::over(area.bounds());
+        for i in 0..claims.owners.len() {
+            claims.owners[i] = OUTSIDE;
+        }
+        claims.open(area);
+        claims
+    }
+
+    fn over(bounds: Bounds) -> Self {
         let size = (bounds.size() / CELL_M).ceil().max(Vec2::ONE);
         let (columns, rows) = (size.x as usize, size.y as usize);
         let (owners, pieces) = (vec![0; columns * rows], vec![None]);
         Self { min: bounds.min, columns, rows, owners, pieces }
     }
 
-    /// The part of these claims in `bounds`; what is claimed in it further does not count here.
-    pub fn window(&self, bounds: Bounds) -> Self {
-        let mut part = Self { pieces: self.pieces.clone(), ..Self::new(bounds) };
+    /// The part of these claims inside `area`; what is claimed in it further does not count here.
+    pub fn window(&self, area: &Polygon) -> Self {
+        let mut part = Self { pieces: self.pieces.clone(), ..Self::new(area) };
         for i in 0..part.owners.len() {
-            part.owners[i] = self.owner(part.center(i)).unwrap_or(0);
+            if part.owners[i] == 0 {
+                part.owners[i] = self.owner(part.center(i)).unwrap_or(0);
+            }
         }
         part
+    }
+
+    /// Frees the ground inside `area`: row by row between its borders, by the even-odd rule.
+    fn open(&mut self, area: &Polygon) {
+        let sides: Vec<(Vec2, Vec2)> = area.segments().map(|(a, b)| (a.to_m(), b.to_m())).collect();
+        for row in 0..self.rows {
+            let y = self.min.y + (row as f64 + 0.5) * CELL_M;
+            let crossed = sides.iter().filter(|(a, b)| (a.y > y) != (b.y > y));
+            let mut xs: Vec<f64> =
+                crossed.map(|(a, b)| a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y)).collect();
+            xs.sort_by(f64::total_cmp);
+            for inside in xs.chunks_exact(2) {
+                let column = |x: f64| ((x - self.min.x) / CELL_M - 0.5).ceil().max(0.0) as usize;
+                let (from, to) = (column(inside[0]), column(inside[1]).min(self.columns));
+                self.owners[row * self.columns..][from.min(to)..to].fill(0);
+            }
+        }
+    }
+
+    /// Does `p` lie inside the area, as the grid sees it?
+    pub fn is_inside(&self, p: Vec2) -> bool {
+        self.cell(p).is_some_and(|i| self.owners[i] != OUTSIDE)
     }
 
     /// The number of the next piece.
@@ -56,7 +91,7 @@ impl Claims {
     /// The pieces that claim ground here, in order of their numbers.
     pub fn pieces_here(&self) -> Vec<Coherent> {
         let mut is_here = vec![false; self.pieces.len()];
-        for owner in &self.owners {
+        for owner in self.owners.iter().filter(|owner| **owner != OUTSIDE) {
             is_here[*owner as usize] = true;
         }
         let here = self.pieces.iter().zip(is_here).filter(|(_, is_here)| *is_here);
@@ -72,7 +107,7 @@ impl Claims {
 
     /// The piece that `p` belongs to.
     pub fn owner(&self, p: Vec2) -> Option<u32> {
-        self.cell(p).map(|i| self.owners[i]).filter(|id| *id > 0)
+        self.cell(p).map(|i| self.owners[i]).filter(|id| *id > 0 && *id != OUTSIDE)
     }
 
     /// Claims the free ground that `piece` reaches from its origin and that `may_have` accepts.

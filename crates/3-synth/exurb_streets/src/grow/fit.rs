@@ -5,7 +5,7 @@
 //! its streets, shifted, should coincide with streets that are there or lie in the open, and not run
 //! close by others or across them.
 
-use exurb_geom::{GridPoint, PointIndex, Vec2, polyline};
+use exurb_geom::{PointGrid, Vec2, polyline};
 
 use super::growth::Growth;
 use super::network::Coherent;
@@ -32,7 +32,7 @@ const MET_COSINE: f64 = 0.95;
 #[derive(Debug)]
 pub struct Samples {
     points: Vec<Sample>,
-    index: PointIndex,
+    index: PointGrid,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -45,15 +45,15 @@ struct Sample {
 impl Samples {
     /// The samples of some lines, main streets or not.
     pub fn of(lines: impl Iterator<Item = (Vec<Vec2>, bool)>) -> Self {
-        let mut samples = Self { points: Vec::new(), index: PointIndex::new(LOOK_M / 2.0) };
+        let mut points = Vec::new();
         for (line, is_main) in lines {
             for w in polyline::resample(&line, STEP_M).windows(2) {
                 let (at, direction) = (w[0].midpoint(w[1]), (w[1] - w[0]).normalize_or_zero());
-                samples.index.insert(samples.points.len() as u32, at);
-                samples.points.push(Sample { at, direction, is_main });
+                points.push(Sample { at, direction, is_main });
             }
         }
-        samples
+        let places: Vec<Vec2> = points.iter().map(|sample| sample.at).collect();
+        Self { index: PointGrid::new(&places, 2.0 * STEP_M), points }
     }
 }
 
@@ -133,7 +133,7 @@ pub fn of(growth: &Growth, piece: &Coherent) -> Fit {
     samples.index.visit(piece.source, LOOK_M, |id| {
         let sample = samples.points[id as usize];
         let p = piece.place(sample.at);
-        if growth.is_main && !sample.is_main || !growth.area.contains(GridPoint::round(p)) {
+        if growth.is_main && !sample.is_main || !growth.claims.is_inside(p) {
             return;
         }
         match growth.net.street_near(p, NEAR_M) {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use exurb_city::street_graph::StreetGraph;
 use exurb_city::{City, Role, block};
-use exurb_geom::{GridPoint, LonLat, PointIndex, Polygon, SegmentIndex, Vec2, polyline};
+use exurb_geom::{GridPoint, LonLat, PointGrid, Polygon, SegmentIndex, Vec2, polyline};
 use exurb_graph::{EdgeId, Faces, NodeId};
 use exurb_measure::statistics::{StreetStatistics, street_statistics};
 
@@ -47,7 +47,7 @@ pub struct Style {
     /// The patches.
     pub patches: Vec<Patch>,
     /// The layer's nodes by place.
-    pub places: PointIndex,
+    pub places: PointGrid,
     /// Every connector, for drawing the next patch.
     pub connectors: Connectors,
     /// Mean and variance of length and curvature.
@@ -171,10 +171,8 @@ pub fn learn(city: &City, params: &Params) -> Result<Vocabulary, Error> {
             _ => all.clone(),
         };
         let empty_m = fill::empty_distance_m(&city.target, &streets, &all);
-        let mut places = PointIndex::new(100.0);
-        for (number, node) in (0..).zip(&layer.nodes) {
-            places.insert(number, node.at);
-        }
+        let places: Vec<Vec2> = layer.nodes.iter().map(|node| node.at).collect();
+        let places = PointGrid::new(&places, 100.0);
         let spacing_m = match role {
             Role::Main => spacing_m(&graph, |id| is_main[id.index()]),
             _ => spacing_m(&graph, |_| true),

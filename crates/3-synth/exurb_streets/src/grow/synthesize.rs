@@ -71,7 +71,7 @@ fn grow_main(
 ) -> Result<(Network, Claims), Error> {
     let first = plan.example_at(area.interior_point());
     let net = Network::new(plan.statistics(first, true).length_mean_m);
-    let claims = Claims::new(area.bounds());
+    let claims = Claims::new(area);
     let mut growth = Growth::new(net, plan, true, area, params, claims, run.stream(0));
     for start in &plan.starts {
         begin(&mut growth, start);
