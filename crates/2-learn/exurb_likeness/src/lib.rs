@@ -11,6 +11,7 @@
 //! | [`distance`], [`draws`] | distances of distributions, equal draws |
 //! | [`mod@patches`] | the discriminator |
 //! | [`held_out`] | the part that is compared with |
+//! | [`comparison`] | a candidate against an example: windows, floor, result |
 //! | [`copying`] | how much of a city stands in its example |
 //! | [`panel`] | what was measured of nine cities, for floors |
 //! | [`scorecard`] | ceilings, floors, scores |
@@ -18,6 +19,7 @@
 //! | [`nets`] | streets by rule, with and without a city: what a scale must put in order |
 //! | [`yardstick_table`] | the table that shows whether it does |
 
+pub mod comparison;
 pub mod copying;
 pub mod distance;
 pub mod draws;
@@ -31,6 +33,7 @@ pub mod scorecard;
 pub mod windows;
 pub mod yardstick_table;
 
+pub use comparison::{Floor, Likeness, Place, Reference, Subject};
 pub use held_out::{HeldOut, Side};
 pub use measured::Measured;
 pub use measures::{Family, Measure, STREETS};

@@ -165,8 +165,8 @@ fn summary(columns: &[Column], names: Vec<String>) -> Table {
     let grid = MADE.len() - 1;
     let distances = STREETS.iter().enumerate().map(|(m, measure)| Distances {
         measure: *measure,
-        ceiling: mean(columns.iter().filter_map(|c| c.marks[m].ceiling)),
-        floor: mean(columns.iter().filter_map(|c| c.marks[m].floor_without(None))),
+        ceiling: mean(columns.iter().filter_map(|c| c.marks[m].ceiling())),
+        floor: mean(columns.iter().filter_map(|c| c.marks[m].floor())),
         grid: mean(columns.iter().filter_map(|c| c.made[grid].measures[m].distance)),
     });
     Table {
