@@ -128,21 +128,14 @@ fn run_map(
     let file = map.file_name().unwrap_or_default().to_string_lossy();
     let name = file.split('.').next().unwrap_or_default().to_owned();
     let city = read(map, &name, None)?;
-    let mut run = MapRun {
-        name,
-        split: "",
-        informative: 0,
-        cards: Vec::new(),
-        unseen: None,
-        seconds: 0.0,
-    };
+    let mut run =
+        MapRun { name, split: "", informative: 0, cards: Vec::new(), unseen: None, seconds: 0.0 };
     let splits = [("W|E", [Part::West, Part::East]), ("N|S", [Part::North, Part::South])];
     for (split, parts) in splits {
         let [a, b] = halves(map, &run.name, parts, options.inside)?;
         let whole = |city| Place { city, window: bounds(city) };
         let size = bounds(&a).size().min(bounds(&b).size());
-        let reference =
-            Reference::new(&a, &[whole(&a)], whole(&b), Floor::Panel, panel, size, 1);
+        let reference = Reference::new(&a, &[whole(&a)], whole(&b), Floor::Panel, panel, size, 1);
         let informative = reference.yardstick.informative();
         if informative > run.informative {
             (run.split, run.informative) = (split, informative);

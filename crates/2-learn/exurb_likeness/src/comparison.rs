@@ -144,8 +144,7 @@ impl Reference {
         let names = cities.iter().map(|c| c.metadata.name.to_string());
         let held_out = held_out.cut(size);
         let mut notes = overlapping(parts, held_out);
-        let Subject { network, measured, patches } =
-            Subject::of(held_out, panel, seed, HELD_OUT);
+        let Subject { network, measured, patches } = Subject::of(held_out, panel, seed, HELD_OUT);
         notes.extend(thin(&network, "the held-out part"));
         let real = own.iter().map(|s| &s.measured).chain(floor.iter().map(|s| s.measured));
         let held_out = HeldOut::new(measured, patches, real, seed);

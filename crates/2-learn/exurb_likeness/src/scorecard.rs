@@ -159,14 +159,7 @@ impl Yardstick {
                 Some(d) => of(d).filter(|s| s.is_finite()),
                 None => lacks.then_some(-1.0),
             };
-            Score {
-                measure: marks.measure,
-                ceiling,
-                floor,
-                distance,
-                score,
-                informative,
-            }
+            Score { measure: marks.measure, ceiling, floor, distance, score, informative }
         };
         Scorecard::of(self.marks.iter().zip(distances).map(score).collect())
     }

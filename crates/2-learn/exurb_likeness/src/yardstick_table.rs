@@ -66,6 +66,9 @@ impl Set {
     }
 }
 
+/// Candidates of one kind that are made and scored for each city: chance moves a single one by 0.05.
+const REPETITIONS: usize = 3;
+
 type Maker = fn(&Network, &mut Rng) -> StreetGraph;
 
 /// Kinds of candidates made from the example part.
@@ -122,7 +125,8 @@ fn equal_halves(cities: &[&City]) -> Vec<[Bounds; 2]> {
 struct Column {
     marks: Vec<Marks>,
     itself: Scorecard,
-    made: Vec<Scorecard>,
+    /// By kind, then by repetition.
+    made: Vec<Vec<Scorecard>>,
     others: Vec<Scorecard>,
     informative: usize,
 }
@@ -140,13 +144,15 @@ fn column(
     let real = others.iter().map(|s| s.measured).chain([&a.measured]);
     let held_out = HeldOut::new(b.measured.clone(), b.patches.clone(), real, seed);
     let yardstick = Yardstick::new(held_out, &STREETS, &[a.side()], &others);
-    let made = MADE.par_iter().map(|(name, make)| {
-        let streets = make(part, &mut rng::stream(seed, name, own as u64));
+    let made = |(name, make): &(&str, Maker), repetition: usize| {
+        let key = (own * REPETITIONS + repetition) as u64;
+        let streets = make(part, &mut rng::stream(seed, name, key));
         yardstick.score(looked_at(Measured::of(&streets, part.window), CANDIDATE).side())
-    });
+    };
+    let of_kind = |kind| (0..REPETITIONS).into_par_iter().map(|r| made(kind, r)).collect();
     Column {
         itself: yardstick.score(a.side()),
-        made: made.collect(),
+        made: MADE.par_iter().map(of_kind).collect(),
         others: (0..others.len()).map(|i| yardstick.score_other(i)).collect(),
         informative: yardstick.informative(),
         marks: yardstick.marks().to_vec(),
@@ -160,14 +166,14 @@ fn summary(columns: &[Column], names: Vec<String>) -> Table {
             let others = columns.iter().flat_map(|c| &c.others).collect();
             rows.push(row("another real city", others));
         }
-        rows.push(row(name, columns.iter().map(|c| &c.made[i]).collect()));
+        rows.push(row(name, columns.iter().flat_map(|c| &c.made[i]).collect()));
     }
-    let grid = MADE.len() - 1;
+    let grids = || columns.iter().flat_map(|c| &c.made[MADE.len() - 1]);
     let distances = STREETS.iter().enumerate().map(|(m, measure)| Distances {
         measure: *measure,
         ceiling: mean(columns.iter().filter_map(|c| c.marks[m].ceiling())),
         floor: mean(columns.iter().filter_map(|c| c.marks[m].floor())),
-        grid: mean(columns.iter().filter_map(|c| c.made[grid].measures[m].distance)),
+        grid: mean(grids().filter_map(|card| card.measures[m].distance)),
     });
     Table {
         rows,
