@@ -10,6 +10,8 @@
 //! | [`measured`] | all measures of one window of a city |
 //! | [`distance`], [`draws`] | distances of distributions, equal draws |
 //! | [`mod@patches`] | the discriminator |
+//! | [`explain`], [`words`] | what a score means, in a sentence |
+//! | [`document`] | what a comparison found, as JSON and as a table |
 //! | [`held_out`] | the part that is compared with |
 //! | [`comparison`] | a candidate against an example: windows, floor, result |
 //! | [`copying`] | how much of a city stands in its example |
@@ -22,7 +24,9 @@
 pub mod comparison;
 pub mod copying;
 pub mod distance;
+pub mod document;
 pub mod draws;
+pub mod explain;
 pub mod held_out;
 pub mod measured;
 pub mod measures;
@@ -31,9 +35,11 @@ pub mod panel;
 pub mod patches;
 pub mod scorecard;
 pub mod windows;
+pub mod words;
 pub mod yardstick_table;
 
 pub use comparison::{Floor, Likeness, Place, Reference, Subject};
+pub use document::Document;
 pub use held_out::{HeldOut, Side};
 pub use measured::Measured;
 pub use measures::{Family, Measure, STREETS};
