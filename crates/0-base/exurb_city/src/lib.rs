@@ -28,6 +28,7 @@ mod cut;
 pub mod densest_square;
 mod draft;
 mod edit;
+mod facades;
 pub mod feature;
 pub mod hierarchy;
 pub mod laws;

@@ -18,7 +18,8 @@ pub struct Street {
     pub level: u8,
     /// Lanes in both directions together; 0 = unknown.
     pub lanes: u8,
-    /// Width of the carriageway in metres; 0 = unknown. See [`Street::width_m`].
+    /// Width of the carriageway in metres; 0 = unknown. See [`Street::width_m`]. On an imported map no
+    /// more than the facades beside it leave room for.
     pub width_m: f64,
     /// Driven along the line only.
     pub oneway: bool,
