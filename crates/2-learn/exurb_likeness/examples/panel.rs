@@ -1,7 +1,6 @@
-//! `panel MAP... > panel.json.gz`: measures the built-in panel from maps. `cargo xtask panel` runs it.
+//! `panel FILE MAP...`: measures the built-in panel from maps. `cargo xtask panel` runs it.
 
 use std::error::Error;
-use std::io::Write;
 use std::path::PathBuf;
 
 use exurb_city::{City, ImportOptions};
@@ -14,8 +13,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         city.metadata.name = name.split('.').next().unwrap_or_default().into();
         Ok(city)
     };
-    let cities: Vec<City> =
-        std::env::args_os().skip(1).map(|file| city(file.into())).collect::<Result<_, _>>()?;
-    std::io::stdout().write_all(&Panel::measure(&cities, 1)?.write()?)?;
+    let mut files = std::env::args_os().skip(1).map(PathBuf::from);
+    let out = files.next().ok_or("name the file to write, then the maps")?;
+    let cities: Vec<City> = files.map(city).collect::<Result<_, _>>()?;
+    std::fs::write(out, Panel::measure(&cities, 1)?.write()?)?;
     Ok(())
 }

@@ -32,20 +32,30 @@ impl ByWeight {
         Self { cumulative: cumulative.collect() }
     }
 
-    /// One index; there is at least one item.
+    /// One index at random; there is at least one item.
     pub fn draw(&self, rng: &mut Rng) -> usize {
+        self.at(rng.random::<f64>())
+    }
+
+    /// The index at a place in 0..1; there is at least one item.
+    pub fn at(&self, place: f64) -> usize {
         let last = self.cumulative.len() - 1;
-        let at = rng.random::<f64>() * self.cumulative[last];
+        let at = place * self.cumulative[last];
         self.cumulative.partition_point(|c| *c <= at).min(last)
     }
 }
 
-/// `count` values drawn by weight, ascending.
-pub fn sorted(sample: &Sample, count: usize, rng: &mut Rng) -> Vec<f64> {
-    let by_weight = ByWeight::new(sample.weights());
-    let mut values: Vec<f64> = (0..count).map(|_| sample.values()[by_weight.draw(rng)]).collect();
-    values.sort_by(f64::total_cmp);
-    values
+/// `count` random places in 0..1, ascending.
+pub fn places(count: usize, rng: &mut Rng) -> Vec<f64> {
+    let mut places: Vec<f64> = (0..count).map(|_| rng.random::<f64>()).collect();
+    places.sort_by(f64::total_cmp);
+    places
+}
+
+/// Values drawn by weight from a sample in ascending order, one for each place: ascending, too.
+pub fn at_places(sorted: &Sample, places: &[f64]) -> Vec<f64> {
+    let by_weight = ByWeight::new(sorted.weights());
+    places.iter().map(|place| sorted.values()[by_weight.at(*place)]).collect()
 }
 
 #[cfg(test)]
@@ -55,7 +65,8 @@ mod tests {
     #[test]
     fn draws_follow_the_weights() {
         let sample = Sample::weighted([(1.0, 1.0), (2.0, 3.0)]);
-        let drawn = sorted(&sample, 4000, &mut exurb_operation::rng::stream(1, "test", 0));
+        let mut rng = exurb_operation::rng::stream(1, "test", 0);
+        let drawn = at_places(&sample, &places(4000, &mut rng));
         let twos = drawn.iter().filter(|v| **v == 2.0).count();
         assert!((2900..3100).contains(&twos), "{twos}");
     }

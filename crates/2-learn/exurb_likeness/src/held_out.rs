@@ -8,6 +8,7 @@ use exurb_operation::rng;
 use crate::draws::{self, ByWeight};
 use crate::measures::{Distance, Measure};
 use crate::patches::{Patches, kernel_distance, told_apart};
+use crate::scorecard::mean;
 use crate::{Measured, distance};
 
 /// Repetitions of a draw of values, of a draw of blocks.
@@ -34,7 +35,16 @@ pub struct HeldOut {
     patches: Option<Patches>,
     /// How many values are drawn, by measure.
     draws: BTreeMap<&'static str, usize>,
+    /// What is drawn of the part, and where of others, by measure and repetition.
+    drawn: BTreeMap<&'static str, Vec<Drawn>>,
     seed: u64,
+}
+
+/// One draw of the part, and the places of one draw of whatever it is compared with.
+#[derive(Debug)]
+struct Drawn {
+    own: Vec<f64>,
+    places: Vec<f64>,
 }
 
 impl HeldOut {
@@ -51,8 +61,19 @@ impl HeldOut {
         for (name, size) in real.chain(measured.sizes.iter()) {
             smallest.entry(*name).and_modify(|s| *s = *size.min(s)).or_insert(*size);
         }
-        let draws = smallest.into_iter().map(|(name, size)| (name, draws::size(size))).collect();
-        Self { measured, patches, draws, seed }
+        let draws: BTreeMap<_, _> =
+            smallest.into_iter().map(|(name, size)| (name, draws::size(size))).collect();
+        let drawn = measured.samples.iter().map(|(name, sample)| {
+            let count = draws.get(name).copied().unwrap_or(draws::LEAST);
+            let draw = |repetition: u64| {
+                let places = |side: u64| {
+                    draws::places(count, &mut rng::stream(seed, name, 2 * repetition + side))
+                };
+                Drawn { own: draws::at_places(sample, &places(1)), places: places(0) }
+            };
+            (*name, (0..REPETITIONS).map(draw).collect())
+        });
+        Self { drawn: drawn.collect(), measured, patches, draws, seed }
     }
 
     /// What was measured of the part.
@@ -85,7 +106,7 @@ impl HeldOut {
         match measure.distance {
             Distance::Wasserstein(least) => {
                 let (a, b) = (its.samples.get(measure.name)?, own.samples.get(measure.name)?);
-                Some(self.wasserstein(measure.name, a, b) / sigma(b).max(least))
+                Some(self.wasserstein(measure.name, a)? / sigma(b).max(least))
             }
             Distance::Variation => Some(distance::total_variation(&its.degrees?, &own.degrees?)),
             Distance::Rotation => {
@@ -98,16 +119,11 @@ impl HeldOut {
     }
 
     /// Mean over six draws, equal in number, by weight.
-    fn wasserstein(&self, name: &'static str, a: &Sample, b: &Sample) -> f64 {
-        let count = self.draws.get(name).copied().unwrap_or(draws::LEAST);
-        let once = |repetition: u64| {
-            let drawn = |sample: &Sample, side: u64| {
-                let mut rng = rng::stream(self.seed, name, 2 * repetition + side);
-                draws::sorted(sample, count, &mut rng)
-            };
-            distance::wasserstein_of_sorted(&drawn(a, 0), &drawn(b, 1))
-        };
-        (0..REPETITIONS).map(once).sum::<f64>() / REPETITIONS as f64
+    fn wasserstein(&self, name: &'static str, other: &Sample) -> Option<f64> {
+        mean(self.drawn.get(name)?.iter().map(|drawn| {
+            let its = draws::at_places(other, &drawn.places);
+            distance::wasserstein_of_sorted(&its, &drawn.own)
+        }))
     }
 
     fn discrepancy(&self, a: &Fingerprint, b: &Fingerprint) -> Option<f64> {

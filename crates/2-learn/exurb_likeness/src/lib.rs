@@ -10,7 +10,10 @@
 //! | [`measured`] | all measures of one window of a city |
 //! | [`distance`], [`draws`] | distances of distributions, equal draws |
 //! | [`mod@patches`] | the discriminator |
+//! | [`explain`], [`words`] | what a score means, in a sentence |
+//! | [`document`] | what a comparison found, as JSON and as a table |
 //! | [`held_out`] | the part that is compared with |
+//! | [`comparison`] | a candidate against an example: windows, floor, result |
 //! | [`copying`] | how much of a city stands in its example |
 //! | [`panel`] | what was measured of nine cities, for floors |
 //! | [`scorecard`] | ceilings, floors, scores |
@@ -18,9 +21,12 @@
 //! | [`nets`] | streets by rule, with and without a city: what a scale must put in order |
 //! | [`yardstick_table`] | the table that shows whether it does |
 
+pub mod comparison;
 pub mod copying;
 pub mod distance;
+pub mod document;
 pub mod draws;
+pub mod explain;
 pub mod held_out;
 pub mod measured;
 pub mod measures;
@@ -29,8 +35,11 @@ pub mod panel;
 pub mod patches;
 pub mod scorecard;
 pub mod windows;
+pub mod words;
 pub mod yardstick_table;
 
+pub use comparison::{Floor, Likeness, Place, Reference, Subject};
+pub use document::Document;
 pub use held_out::{HeldOut, Side};
 pub use measured::Measured;
 pub use measures::{Family, Measure, STREETS};

@@ -22,7 +22,7 @@ const SEED: u64 = 1;
 #[derive(Clone, Debug, Default)]
 pub struct Measured {
     /// Measures that are distributions of one number, by name; those with five values or fewer are
-    /// absent.
+    /// absent. Ascending.
     pub samples: BTreeMap<&'static str, Sample>,
     /// Number of values by measure, before any were left out of a summary.
     pub sizes: BTreeMap<&'static str, usize>,
@@ -78,7 +78,10 @@ impl Measured {
             ("natural_street_length", natural_streets::length(network)),
         ];
         let all = named.into_iter().chain(aligned);
-        let samples: BTreeMap<_, _> = all.filter(|(_, sample)| sample.len() > FEW).collect();
+        let samples: BTreeMap<_, _> = all
+            .filter(|(_, sample)| sample.len() > FEW)
+            .map(|(name, sample)| (name, sample.sorted()))
+            .collect();
         Self {
             sizes: samples.iter().map(|(name, sample)| (*name, sample.len())).collect(),
             samples,

@@ -137,6 +137,13 @@ pub fn place_of(city: &City) -> [f64; 4] {
     [sw.lon, sw.lat, ne.lon, ne.lat]
 }
 
+/// Share of the smaller of two places that lies in the other.
+pub(crate) fn shared_area(a: [f64; 4], b: [f64; 4]) -> f64 {
+    let side = |i: usize| (a[i + 2].min(b[i + 2]) - a[i].max(b[i])).max(0.0);
+    let area = |p: [f64; 4]| (p[2] - p[0]) * (p[3] - p[1]);
+    side(0) * side(1) / area(a).min(area(b))
+}
+
 #[derive(Serialize, Deserialize)]
 struct Document {
     about: String,

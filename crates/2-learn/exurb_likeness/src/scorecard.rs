@@ -5,6 +5,8 @@
 
 use std::collections::BTreeMap;
 
+use rayon::prelude::*;
+
 use crate::held_out::{HeldOut, Side};
 use crate::measures::{Distance, Family, Measure};
 
@@ -18,22 +20,43 @@ const LEAST_GAP: f64 = 0.05;
 pub struct Marks {
     /// The measure.
     pub measure: Measure,
-    /// Mean distance of the example's parts from the held-out part.
-    pub ceiling: Option<f64>,
+    /// Distance of every part of the example, in the order they were given.
+    pub ceilings: Vec<Option<f64>>,
     /// Distance of every other city, in the order they were given.
     pub floors: Vec<Option<f64>>,
 }
 
+/// One of the real sets of a yardstick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Real {
+    Part(usize),
+    Other(usize),
+}
+
 impl Marks {
-    /// Mean distance of the other cities but the one of that number.
-    pub fn floor_without(&self, left_out: Option<usize>) -> Option<f64> {
-        let kept = self.floors.iter().enumerate().filter(|(i, _)| Some(*i) != left_out);
-        mean(kept.filter_map(|(_, d)| *d))
+    /// Mean distance of the example's parts.
+    pub fn ceiling(&self) -> Option<f64> {
+        self.ceiling_without(None)
     }
 
-    /// Do ceiling and floor separate?
-    pub fn is_informative(&self, floor: Option<f64>) -> bool {
-        let Some((ceiling, floor)) = self.ceiling.zip(floor) else { return false };
+    /// Mean distance of the other cities.
+    pub fn floor(&self) -> Option<f64> {
+        self.floor_without(None)
+    }
+
+    fn ceiling_without(&self, left_out: Option<Real>) -> Option<f64> {
+        let kept = self.ceilings.iter().enumerate();
+        mean(kept.filter(|(i, _)| Some(Real::Part(*i)) != left_out).filter_map(|(_, d)| *d))
+    }
+
+    fn floor_without(&self, left_out: Option<Real>) -> Option<f64> {
+        let kept = self.floors.iter().enumerate();
+        mean(kept.filter(|(i, _)| Some(Real::Other(*i)) != left_out).filter_map(|(_, d)| *d))
+    }
+
+    /// Do a ceiling and a floor of this measure separate?
+    fn separate(&self, ceiling: Option<f64>, floor: Option<f64>) -> bool {
+        let Some((ceiling, floor)) = ceiling.zip(floor) else { return false };
         match self.measure.distance {
             Distance::Classifier => floor - ceiling > LEAST_GAP,
             _ => ceiling < LEAST_GAP_SHARE * floor,
@@ -81,12 +104,13 @@ pub struct Scorecard {
 impl Yardstick {
     /// Sets ceilings and floors.
     pub fn new(held_out: HeldOut, measures: &[Measure], parts: &[Side], others: &[Side]) -> Self {
-        let marks = |measure: &Measure| Marks {
-            measure: *measure,
-            ceiling: mean(parts.iter().filter_map(|part| held_out.distance(measure, *part))),
-            floors: others.iter().map(|other| held_out.distance(measure, *other)).collect(),
+        let marks = |measure: &Measure| {
+            let distances = |sides: &[Side]| -> Vec<Option<f64>> {
+                sides.par_iter().map(|side| held_out.distance(measure, *side)).collect()
+            };
+            Marks { measure: *measure, ceilings: distances(parts), floors: distances(others) }
         };
-        let marks = measures.iter().map(marks).collect();
+        let marks = measures.par_iter().map(marks).collect();
         Self { held_out, marks }
     }
 
@@ -102,45 +126,42 @@ impl Yardstick {
 
     /// Number of measures that separate here.
     pub fn informative(&self) -> usize {
-        self.marks.iter().filter(|m| m.is_informative(m.floor_without(None))).count()
+        self.marks.iter().filter(|m| m.separate(m.ceiling(), m.floor())).count()
     }
 
     /// Scores a candidate.
     pub fn score(&self, candidate: Side) -> Scorecard {
         let distance = |m: &Marks| self.held_out.distance(&m.measure, candidate);
-        self.scorecard(distance, None)
+        let distances: Vec<Option<f64>> = self.marks.par_iter().map(distance).collect();
+        self.scorecard(&distances, None)
+    }
+
+    /// Scores one of the example's parts, which does not count for the ceiling then.
+    pub fn score_part(&self, number: usize) -> Scorecard {
+        let distances: Vec<Option<f64>> = self.marks.iter().map(|m| m.ceilings[number]).collect();
+        self.scorecard(&distances, Some(Real::Part(number)))
     }
 
     /// Scores one of the other cities, which does not count for the floor then.
     pub fn score_other(&self, number: usize) -> Scorecard {
-        self.scorecard(|m| m.floors[number], Some(number))
+        let distances: Vec<Option<f64>> = self.marks.iter().map(|m| m.floors[number]).collect();
+        self.scorecard(&distances, Some(Real::Other(number)))
     }
 
-    fn scorecard(
-        &self,
-        distance: impl Fn(&Marks) -> Option<f64>,
-        left_out: Option<usize>,
-    ) -> Scorecard {
-        let score = |marks: &Marks| {
-            let floor = marks.floor_without(left_out);
-            let informative = marks.is_informative(floor);
-            let distance = distance(marks);
+    fn scorecard(&self, distances: &[Option<f64>], left_out: Option<Real>) -> Scorecard {
+        let score = |(marks, distance): (&Marks, &Option<f64>)| {
+            let (ceiling, floor) = (marks.ceiling_without(left_out), marks.floor_without(left_out));
+            let informative = marks.separate(ceiling, floor);
+            let distance = *distance;
             let lacks = distance.is_none() && self.held_out.has(&marks.measure);
-            let of = |d: f64| Some((floor? - d) / (floor? - marks.ceiling?));
+            let of = |d: f64| Some((floor? - d) / (floor? - ceiling?));
             let score = match distance {
                 Some(d) => of(d).filter(|s| s.is_finite()),
                 None => lacks.then_some(-1.0),
             };
-            Score {
-                measure: marks.measure,
-                ceiling: marks.ceiling,
-                floor,
-                distance,
-                score,
-                informative,
-            }
+            Score { measure: marks.measure, ceiling, floor, distance, score, informative }
         };
-        Scorecard::of(self.marks.iter().map(score).collect())
+        Scorecard::of(self.marks.iter().zip(distances).map(score).collect())
     }
 }
 

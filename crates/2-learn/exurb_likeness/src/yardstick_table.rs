@@ -11,14 +11,51 @@ use exurb_geom::{Bounds, Vec2};
 use exurb_measure::Network;
 use exurb_operation::{Rng, rng};
 use rayon::prelude::*;
+use serde::Serialize;
 
-use crate::measures::{Family, Measure, STREETS};
+use crate::measures::{Family, STREETS};
 use crate::patches::{CANDIDATE, Dictionary, HELD_OUT, Patches};
 use crate::scorecard::{Marks, mean};
 use crate::{HeldOut, Measured, Scorecard, Side, Yardstick, nets, windows};
 
+impl Table {
+    /// Both tables as text.
+    pub fn to_text(&self) -> String {
+        let figure = |v: Option<f64>| v.map_or("-".to_owned(), |v| format!("{v:.2}"));
+        let mut out = format!("{:<24} {:>8} {:>8} {:>8}\n", "measure", "ceiling", "floor", "grid");
+        for d in &self.distances {
+            let [ceiling, floor, grid] = [d.ceiling, d.floor, d.grid].map(figure);
+            out += &format!("{:<24} {ceiling:>8} {floor:>8} {grid:>8}\n", d.measure);
+        }
+        let families: Vec<&str> = Family::ALL.iter().map(|f| f.name()).collect();
+        out += &format!(
+            "\n{:<32} {:>13} {:>6}  {}\n",
+            "candidate",
+            "TOTAL (sd)",
+            "CORE",
+            families.join(" ")
+        );
+        for row in &self.rows {
+            let family = |f: &Family| {
+                let score = figure(row.families.get(f.name()).copied());
+                format!("{score:>width$}", width = f.name().len())
+            };
+            let families: Vec<String> = Family::ALL.iter().map(family).collect();
+            let total = format!("{:.2} ({:.2})", row.total[0], row.total[1]);
+            let core = figure(Some(row.core));
+            out +=
+                &format!("{:<32} {total:>13} {core:>6}  {}\n", row.candidate, families.join(" "));
+        }
+        out += "\ninformative measures:";
+        for (name, count) in &self.informative {
+            out += &format!(" {name} {count}");
+        }
+        out + "\n"
+    }
+}
+
 /// One row: what a kind of candidate scores, over all cities.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Row {
     /// What the candidates are.
     pub candidate: &'static str,
@@ -27,14 +64,14 @@ pub struct Row {
     /// Mean of CORE.
     pub core: f64,
     /// Mean by family.
-    pub families: BTreeMap<Family, f64>,
+    pub families: BTreeMap<&'static str, f64>,
 }
 
 /// Mean distances of one measure over all cities.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Distances {
     /// The measure.
-    pub measure: Measure,
+    pub measure: &'static str,
     /// Of the city's own other part.
     pub ceiling: Option<f64>,
     /// Of other cities.
@@ -44,7 +81,7 @@ pub struct Distances {
 }
 
 /// The table.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Table {
     /// Kinds of candidates, in the order they should come out.
     pub rows: Vec<Row>,
@@ -65,6 +102,9 @@ impl Set {
         Side { measured: &self.measured, patches: self.patches.as_ref() }
     }
 }
+
+/// Candidates of one kind that are made and scored for each city: chance moves a single one by 0.05.
+const REPETITIONS: usize = 3;
 
 type Maker = fn(&Network, &mut Rng) -> StreetGraph;
 
@@ -122,7 +162,8 @@ fn equal_halves(cities: &[&City]) -> Vec<[Bounds; 2]> {
 struct Column {
     marks: Vec<Marks>,
     itself: Scorecard,
-    made: Vec<Scorecard>,
+    /// By kind, then by repetition.
+    made: Vec<Vec<Scorecard>>,
     others: Vec<Scorecard>,
     informative: usize,
 }
@@ -140,13 +181,15 @@ fn column(
     let real = others.iter().map(|s| s.measured).chain([&a.measured]);
     let held_out = HeldOut::new(b.measured.clone(), b.patches.clone(), real, seed);
     let yardstick = Yardstick::new(held_out, &STREETS, &[a.side()], &others);
-    let made = MADE.par_iter().map(|(name, make)| {
-        let streets = make(part, &mut rng::stream(seed, name, own as u64));
+    let made = |(name, make): &(&str, Maker), repetition: usize| {
+        let key = (own * REPETITIONS + repetition) as u64;
+        let streets = make(part, &mut rng::stream(seed, name, key));
         yardstick.score(looked_at(Measured::of(&streets, part.window), CANDIDATE).side())
-    });
+    };
+    let of_kind = |kind| (0..REPETITIONS).into_par_iter().map(|r| made(kind, r)).collect();
     Column {
         itself: yardstick.score(a.side()),
-        made: made.collect(),
+        made: MADE.par_iter().map(of_kind).collect(),
         others: (0..others.len()).map(|i| yardstick.score_other(i)).collect(),
         informative: yardstick.informative(),
         marks: yardstick.marks().to_vec(),
@@ -160,14 +203,14 @@ fn summary(columns: &[Column], names: Vec<String>) -> Table {
             let others = columns.iter().flat_map(|c| &c.others).collect();
             rows.push(row("another real city", others));
         }
-        rows.push(row(name, columns.iter().map(|c| &c.made[i]).collect()));
+        rows.push(row(name, columns.iter().flat_map(|c| &c.made[i]).collect()));
     }
-    let grid = MADE.len() - 1;
+    let grids = || columns.iter().flat_map(|c| &c.made[MADE.len() - 1]);
     let distances = STREETS.iter().enumerate().map(|(m, measure)| Distances {
-        measure: *measure,
-        ceiling: mean(columns.iter().filter_map(|c| c.marks[m].ceiling)),
-        floor: mean(columns.iter().filter_map(|c| c.marks[m].floor_without(None))),
-        grid: mean(columns.iter().filter_map(|c| c.made[grid].measures[m].distance)),
+        measure: measure.name,
+        ceiling: mean(columns.iter().filter_map(|c| c.marks[m].ceiling())),
+        floor: mean(columns.iter().filter_map(|c| c.marks[m].floor())),
+        grid: mean(grids().filter_map(|card| card.measures[m].distance)),
     });
     Table {
         rows,
@@ -180,8 +223,9 @@ fn row(candidate: &'static str, cards: Vec<&Scorecard>) -> Row {
     let totals: Vec<f64> = cards.iter().filter_map(|c| c.total).collect();
     let total = mean(totals.iter().copied()).unwrap_or_default();
     let variance = mean(totals.iter().map(|t| (t - total) * (t - total))).unwrap_or_default();
-    let family =
-        |f: Family| Some((f, mean(cards.iter().filter_map(|c| c.families.get(&f).copied()))?));
+    let family = |f: Family| {
+        Some((f.name(), mean(cards.iter().filter_map(|c| c.families.get(&f).copied()))?))
+    };
     Row {
         candidate,
         total: [total, variance.sqrt()],

@@ -65,10 +65,10 @@ struct Piece {
 }
 
 /// Difference in bearing, folded to 0..45 degrees, of street pieces that lie `bands` metres apart:
-/// 2,500 pieces of 25 m drawn at random, up to 8,000 random pairs a band.
+/// 2,500 pieces of 25 m drawn at random, up to 8,000 random pairs a band. O(pieces²).
 pub fn alignment(network: &Network, bands_m: &[(f64, f64)], rng: &mut Rng) -> Vec<Sample> {
     let pieces = drawn_pieces(network, rng);
-    bands_m.iter().map(|band| aligned(&pieces, *band, rng)).collect()
+    pairs(&pieces, bands_m).iter().map(|pairs| aligned(&pieces, pairs, rng)).collect()
 }
 
 fn drawn_pieces(network: &Network, rng: &mut Rng) -> Vec<Piece> {
@@ -80,27 +80,37 @@ fn drawn_pieces(network: &Network, rng: &mut Rng) -> Vec<Piece> {
         }
     }
     let drawn = index::sample(rng, pieces.len(), POINTS.min(pieces.len()));
-    drawn.into_iter().map(|i| pieces[i]).collect()
+    let mut drawn: Vec<Piece> = drawn.into_iter().map(|i| pieces[i]).collect();
+    drawn.sort_by(|a, b| a.at.y.total_cmp(&b.at.y).then(a.at.x.total_cmp(&b.at.x)));
+    drawn
 }
 
-/// Random pairs within a band, each pair as likely as any other.
-fn aligned(pieces: &[Piece], (near_m, far_m): (f64, f64), rng: &mut Rng) -> Sample {
-    let mut pairs: Vec<(u32, u32)> = Vec::new();
+/// The pairs of pieces, sorted by y, within each band.
+fn pairs(pieces: &[Piece], bands_m: &[(f64, f64)]) -> Vec<Vec<(u16, u16)>> {
+    let squares: Vec<(f64, f64)> = bands_m.iter().map(|(lo, hi)| (lo * lo, hi * hi)).collect();
+    let reach_m = bands_m.iter().map(|(_, hi)| *hi).fold(0.0, f64::max);
+    let mut out = vec![Vec::new(); bands_m.len()];
     for (i, a) in pieces.iter().enumerate() {
-        for (j, b) in pieces.iter().enumerate().skip(i + 1) {
+        let near = pieces.iter().enumerate().skip(i + 1);
+        for (j, b) in near.take_while(|(_, b)| b.at.y - a.at.y < reach_m) {
             let square = a.at.distance_squared(b.at);
-            if near_m * near_m <= square && square < far_m * far_m {
-                pairs.push((i as u32, j as u32));
+            if let Some(band) = squares.iter().position(|(lo, hi)| *lo <= square && square < *hi) {
+                out[band].push((i as u16, j as u16));
             }
         }
     }
-    let folded = |(i, j): (u32, u32)| {
+    out
+}
+
+/// Folded differences of up to 8,000 random pairs, each as likely as any other.
+fn aligned(pieces: &[Piece], pairs: &[(u16, u16)], rng: &mut Rng) -> Sample {
+    let folded = |(i, j): (u16, u16)| {
         let turned = pieces[i as usize].degrees - pieces[j as usize].degrees;
         let quarter = turned.rem_euclid(90.0);
         quarter.min(90.0 - quarter)
     };
     if pairs.len() <= PAIRS {
-        return Sample::plain(pairs.into_iter().map(folded));
+        return Sample::plain(pairs.iter().copied().map(folded));
     }
     Sample::plain((0..PAIRS).map(|_| folded(pairs[rng.random_range(0..pairs.len())])))
 }

@@ -1,6 +1,6 @@
 //! Measures along shortest paths: reach, detour, betweenness.
 //!
-//! From up to 300 junctions away from the border, drawn at random. O(sources · streets near · log).
+//! From up to 300 nodes away from the border, drawn at random. O(sources · streets near · log).
 //! Runs on rayon's current pool; the result does not depend on the number of threads.
 
 use std::cmp::Reverse;
@@ -45,51 +45,56 @@ pub struct Paths {
     pub betweenness: Sample,
 }
 
-/// Measures along shortest paths from junctions drawn at random.
+/// Measures along shortest paths: reach and betweenness from junctions, detours from all nodes,
+/// dead ends among them, drawn at random.
 pub fn paths(network: &Network, rng: &mut Rng) -> Paths {
     let roads = Roads::of(network);
-    let sources = sources(network, rng);
-    let targets: Vec<NodeId> = network.junctions().collect();
-    let found: Vec<FromSource> = sources
-        .par_iter()
-        .map_init(
-            || Search::new(&roads),
-            |search, source| from_source(network, search, *source, &targets),
-        )
-        .collect();
+    let around =
+        from_each(&roads, &sources(network, network.junctions(), rng), |search, source| {
+            search.run(source.0, LOCAL_M, std::iter::empty());
+            (search.length_within(REACH_M) / 1000.0, search.paths_through(LOCAL_M))
+        });
+    let targets: Vec<NodeId> = network.ends().collect();
+    let detours = from_each(&roads, &sources(network, network.ends(), rng), |search, source| {
+        detours(network, search, source, &targets)
+    });
     let detour = |band: usize| {
-        Sample::plain(found.iter().flat_map(|from| from.detours[band].iter().copied()))
+        Sample::plain(detours.iter().flat_map(|from: &[Vec<f64>; 2]| from[band].iter().copied()))
     };
     Paths {
-        reach: Sample::plain(found.iter().map(|from| from.reach_km)),
+        reach: Sample::plain(around.iter().map(|(reach_km, _)| *reach_km)),
         detour: [detour(0), detour(1)],
-        betweenness: betweenness(network, &found),
+        betweenness: betweenness(network, around.iter().map(|(_, through)| &through[..])),
     }
 }
 
-/// Up to 300 junctions away from the border.
-fn sources(network: &Network, rng: &mut Rng) -> Vec<NodeId> {
+/// What is found from every source, in their order.
+fn from_each<T: Send>(
+    roads: &Roads,
+    sources: &[NodeId],
+    find: impl Fn(&mut Search, NodeId) -> T + Sync,
+) -> Vec<T> {
+    let sources = sources.par_iter();
+    sources.map_init(|| Search::new(roads), |search, source| find(search, *source)).collect()
+}
+
+/// Up to 300 of these nodes, away from the border.
+fn sources(network: &Network, nodes: impl Iterator<Item = NodeId>, rng: &mut Rng) -> Vec<NodeId> {
     let margin_m = MARGIN_M.min(MARGIN_SHARE * network.window.size().min_element());
     let inner = |n: &NodeId| network.edge_distance_m(*n) >= margin_m;
-    let candidates: Vec<NodeId> = network.junctions().filter(inner).collect();
+    let candidates: Vec<NodeId> = nodes.filter(inner).collect();
     let mut drawn = index::sample(rng, candidates.len(), SOURCES.min(candidates.len())).into_vec();
     drawn.sort_unstable();
     drawn.into_iter().map(|i| candidates[i]).collect()
 }
 
-struct FromSource {
-    reach_km: f64,
-    detours: [Vec<f64>; 2],
-    /// Share of the source's shortest paths that lead through nodes.
-    through: Vec<(u32, f64)>,
-}
-
-fn from_source(
+/// Network over straight distance to the targets in both bands.
+fn detours(
     network: &Network,
     search: &mut Search,
     source: NodeId,
     targets: &[NodeId],
-) -> FromSource {
+) -> [Vec<f64>; 2] {
     let from = network.at(source);
     let mut near = Vec::new();
     for target in targets.iter().filter(|t| **t != source) {
@@ -103,16 +108,13 @@ fn from_source(
         let along_m = search.distance_m(target.0).unwrap_or(FAR_M);
         detours[band].push((along_m / straight_m).min(MOST_DETOUR));
     }
-    let reach_km = search.length_within(REACH_M) / 1000.0;
-    FromSource { reach_km, detours, through: search.paths_through(LOCAL_M) }
+    detours
 }
 
-fn betweenness(network: &Network, found: &[FromSource]) -> Sample {
+fn betweenness<'a>(network: &Network, through: impl Iterator<Item = &'a [(u32, f64)]>) -> Sample {
     let mut sums = vec![0.0; network.graph.node_bound()];
-    for from in found {
-        for (node, share) in &from.through {
-            sums[*node as usize] += share;
-        }
+    for (node, share) in through.flatten() {
+        sums[*node as usize] += share;
     }
     let inner = |n: &NodeId| network.edge_distance_m(*n) > BETWEEN_MARGIN_M;
     let own: Vec<f64> = network.junctions().filter(inner).map(|n| sums[n.index()]).collect();
@@ -190,7 +192,7 @@ impl<'a> Search<'a> {
         let mut open = BinaryHeap::new();
         self.reach(source, 0.0, &mut open);
         while let Some(Reverse((Metres(at_m), node))) = open.pop() {
-            if at_m > most_m || (at_m > LOCAL_M && left == 0) {
+            if at_m > most_m || (left == 0 && at_m > LOCAL_M) {
                 break;
             }
             if std::mem::replace(&mut self.settled[node as usize], true) {

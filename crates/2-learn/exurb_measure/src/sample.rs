@@ -41,6 +41,21 @@ impl Sample {
         self.values.is_empty()
     }
 
+    /// The same values in ascending order.
+    pub fn sorted(&self) -> Self {
+        let order = self.order();
+        Self {
+            values: order.iter().map(|i| self.values[*i]).collect(),
+            weights: order.iter().map(|i| self.weights[*i]).collect(),
+        }
+    }
+
+    fn order(&self) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.len()).collect();
+        order.sort_by(|i, j| self.values[*i].total_cmp(&self.values[*j]).then(i.cmp(j)));
+        order
+    }
+
     /// Weighted mean; `None` when empty.
     pub fn mean(&self) -> Option<f64> {
         let total: f64 = self.weights.iter().sum();
@@ -51,8 +66,7 @@ impl Sample {
     /// Weighted quantiles, `shares` in `0..=1`: linear between the middles of the values' weights,
     /// so that equal weights give every value its usual rank. Empty when the sample is.
     pub fn quantiles(&self, shares: &[f64]) -> Vec<f64> {
-        let mut order: Vec<usize> = (0..self.len()).collect();
-        order.sort_by(|i, j| self.values[*i].total_cmp(&self.values[*j]).then(i.cmp(j)));
+        let order = self.order();
         let total: f64 = self.weights.iter().sum();
         let mut middles = Vec::with_capacity(order.len());
         let mut before = 0.0;
