@@ -15,7 +15,9 @@
 //!
 //! Read where present: lanes (`lanes`, `NB_VOIES`), width (`width`, `LARGEUR`), `oneway`, `SENS`,
 //! `bridge`, `tunnel`, `layer`, `junction`, name; height (`height`, `HAUTEUR`, ...), levels
-//! (`building:levels`, `levels`, `NB_ETAGES`, ...), `min_height`, `roof:shape`, use; zoning.
+//! (`building:levels`, `levels`, `NB_ETAGES`, ...), `min_height`, `roof:shape`, use; zoning. Of lists,
+//! as OSMnx writes them, the first item counts; GDAL's `other_tags` is read as its columns. Where a
+//! file has a column `highway`, a line that leaves it empty is no street.
 //!
 //! A file's coordinate system may be any with an EPSG code or a common projection. A plane system
 //! in metres beyond that keeps shape and scale and loses its place, with a warning; others are

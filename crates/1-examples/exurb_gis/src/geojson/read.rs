@@ -225,7 +225,9 @@ pub(super) fn system(crs: Option<&Json>) -> Result<Option<Crs>, String> {
 
 fn value_of(value: &Json) -> Value<'_> {
     match value {
-        Json::Null | Json::Array(_) | Json::Object(_) => Value::Null,
+        Json::Null | Json::Object(_) => Value::Null,
+        // OSMnx has lists of classes and names.
+        Json::Array(_) => Value::from(value.to_string()),
         Json::Bool(yes) => Value::Bool(*yes),
         Json::Number(n) => match n.as_i64() {
             Some(n) => Value::Int(n),

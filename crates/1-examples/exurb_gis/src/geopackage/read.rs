@@ -192,6 +192,17 @@ fn place(layer: &ForeignLayer, into: &mut Gathering) -> Result<(), Error> {
     match crs {
         Some(crs) => into.place(&crs),
         None if layer.srs_id == -1 => into.leave_placeless(),
+        // Written by a program that knew no system: the numbers tell.
+        None if is_undefined(&layer.definition) && into.looks_like_metres() => {
+            into.leave_placeless()
+        }
+        None if is_undefined(&layer.definition) => {
+            into.warn(format!(
+                "layer `{}` names no coordinate system: its coordinates are taken as degrees",
+                layer.table
+            ));
+            into.place(&Crs::wgs84())
+        }
         None if is_in_metres(&layer.definition) => {
             into.warn(format!(
                 "layer `{}` is in {}, which exurb cannot convert; reproject it to EPSG:4326 to \
@@ -202,6 +213,13 @@ fn place(layer: &ForeignLayer, into: &mut Gathering) -> Result<(), Error> {
         }
         None => Err(Error::CoordinateSystem { file: into.file.clone(), crs: layer.crs.clone() }),
     }
+}
+
+/// Does the system say that it is unknown, as GDAL's does (`LOCAL_CS["Undefined SRS", ...]`)?
+fn is_undefined(definition: &str) -> bool {
+    let upper = definition.to_ascii_uppercase();
+    let local = ["LOCAL_CS[", "ENGCRS[", "ENGINEERINGCRS["];
+    local.iter().any(|word| upper.starts_with(word)) && upper.contains("\"UNDEFINED")
 }
 
 /// Is the system one of a plane, in metres? Then shapes and sizes are right without a place.

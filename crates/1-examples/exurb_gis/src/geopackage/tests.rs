@@ -203,4 +203,11 @@ fn unknown_grids_keep_their_shape_or_are_refused() {
     foreign(&path, 60_000, "LOCAL_CS[\"town grid\",UNIT[\"foot\",0.3048]]", [5e6, 5e6]);
     let error = read_geopackage(&path, &ImportOptions::default()).unwrap_err().to_string();
     assert!(error.contains("EPSG:60000") && error.contains("reproject"), "{error}");
+
+    let undefined = "LOCAL_CS[\"Undefined SRS\",UNIT[\"unknown\",0]]";
+    let path = folder.path().join("undefined.gpkg");
+    foreign(&path, 99_999, undefined, [5e6, 5e6]);
+    let imported = read_geopackage(&path, &ImportOptions::default()).unwrap();
+    assert_eq!(imported.city.streets.length_m(), 400.0);
+    assert!(imported.warnings.iter().any(|w| w.contains("null island")), "{:?}", imported.warnings);
 }
