@@ -30,8 +30,8 @@ pub struct Assembly {
     land_use: Vec<Area>,
 }
 
-/// A street's line may end this far from its intersections: GeoJSON rounds to centimetres. A line
-/// farther off was drawn by hand.
+/// A street's line may end this far from its intersections: other programs round to centimetres. A
+/// line farther off was drawn by hand.
 const END_TOLERANCE_M: f64 = 0.05;
 
 /// Why a row is none of its layer.

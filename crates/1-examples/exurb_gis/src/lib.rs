@@ -1,8 +1,8 @@
 //! GeoPackage and GeoJSON both ways.
 //!
-//! A city is written as one file of either format and read back as the same city: exactly from
-//! GeoPackage, within 2 cm and with the same topology from GeoJSON. Any other file is read by what
-//! its rows are; the streets of several layers or files become one graph, noded where they cross.
+//! A city is written as one file of either format and read back as the very same city. Any other
+//! file is read by what its rows are; the streets of several layers or files become one graph, noded
+//! where they cross.
 //!
 //! | geometry | becomes | when |
 //! |---|---|---|
@@ -26,7 +26,8 @@
 //! | part | what it holds |
 //! |---|---|
 //! | [`geopackage`] | [`write_geopackage`], [`read_geopackage`] |
-//! | [`geojson`] | [`write_geojson`], [`read_geojson`], [`read_geojson_many`], [`read_target`] |
+//! | [`geojson`] | [`write_geojson`], [`read_geojson`], [`read_geojson_many`] |
+//! | [`target`] | [`read_target`] |
 //! | [`fuzz`] | what fuzzing calls |
 //!
 //! ```
@@ -55,11 +56,11 @@ mod numbered;
 mod recognise;
 #[cfg(test)]
 mod sample;
+pub mod target;
 mod value;
 mod wkb;
 
 pub use error::Error;
-pub use geojson::{
-    read_geojson, read_geojson_many, read_target, write_geojson, write_geojson_file,
-};
+pub use geojson::{read_geojson, read_geojson_many, write_geojson, write_geojson_file};
 pub use geopackage::{read_geopackage, write_geopackage};
+pub use target::{TargetArea, read_target};

@@ -15,7 +15,7 @@ use crate::numbered::numbered;
 use crate::value::Value;
 use crate::wkb::Shape;
 
-/// Writes a city as one GeoJSON feature collection (contract, section 4; RFC 7946): WGS 84 with 7
+/// Writes a city as one GeoJSON feature collection (contract, section 4; RFC 7946): WGS 84 with 9
 /// decimals, rings closed and right-handed.
 ///
 /// Every feature has `element`, the columns of its layer that are known, and the properties OSM
@@ -28,7 +28,7 @@ pub fn write_geojson(city: &City, out: &mut impl Write) -> io::Result<()> {
     let city = numbered(city);
     out.write_all(b"{\"type\":\"FeatureCollection\"")?;
     if let Some([sw, ne]) = city.lonlat_bbox() {
-        let sides = [sw.lon, sw.lat, ne.lon, ne.lat].map(degrees);
+        let sides = [sw.lon, sw.lat, ne.lon, ne.lat].map(|side| degrees(side, 7));
         write!(out, ",\n\"bbox\":[{}]", sides.join(","))?;
     }
     for (key, value) in metadata::entries(&city) {
@@ -147,7 +147,7 @@ impl<W: Write> Features<'_, W> {
 
     fn position(&self, p: GridPoint) -> String {
         let LonLat { lon, lat } = self.frame.unproject(p.to_m());
-        format!("[{},{}]", degrees(lon), degrees(lat))
+        format!("[{},{}]", degrees(lon, DECIMALS), degrees(lat, DECIMALS))
     }
 }
 
@@ -194,9 +194,13 @@ fn areas(areas: &[Area]) -> impl Iterator<Item = (&Area, Shape<'_>)> {
     areas.iter().map(|area| (area, Shape::Polygon(&area.polygon)))
 }
 
-/// 7 decimals (a centimetre), without zeros at the end.
-fn degrees(value: f64) -> String {
-    let word = format!("{value:.7}");
+/// Decimals of positions: a tenth of a millimetre, so that the grid comes back exactly. With the 7
+/// of OSM (a centimetre) walls that houses share would overlap where one has a corner more.
+const DECIMALS: usize = 9;
+
+/// So many decimals, without zeros at the end.
+fn degrees(value: f64, decimals: usize) -> String {
+    let word = format!("{value:.decimals$}");
     let word = word.trim_end_matches('0').trim_end_matches('.');
     if word == "-0" { "0".to_owned() } else { word.to_owned() }
 }
