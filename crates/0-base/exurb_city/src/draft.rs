@@ -17,9 +17,13 @@ pub struct Draft {
     pub frame: Frame,
     /// Where the data are complete, as the file declares it; `None` when it does not.
     pub extent: Option<Polygon>,
+    /// What runs past the extent belongs to the city, too, as in files of our own: it is cut only
+    /// where a part is asked for.
+    pub runs_past: bool,
     /// Streets of every role.
     pub streets: StreetMap,
-    /// Ends where a street breaks off because the file lacks its next node: no dead ends.
+    /// Ends where a street breaks off because the file lacks its next node, or says that it runs
+    /// on: no dead ends.
     pub broken_ends: Vec<GridPoint>,
     /// Buildings and parts.
     pub buildings: Vec<Building>,
@@ -79,6 +83,7 @@ impl Draft {
         Self {
             frame,
             extent: None,
+            runs_past: false,
             streets: StreetMap::default(),
             broken_ends: Vec::new(),
             buildings: Vec::new(),
@@ -93,13 +98,17 @@ impl Draft {
     /// The city of this draft, in steps: 1 the target; 2 what lies outside goes; 3 streets; 4
     /// blocks; 5 what lies in which block; 6 what blocks are used for.
     ///
-    /// Streets are cut at the target's edge, other ways lose the segments outside, buildings and
+    /// Unless all of it belongs to the city, streets are cut at the target's edge, other ways lose the segments outside, buildings and
     /// parcels stay where their centroid lies inside, areas and lines are clipped. Because ways
     /// come whole, nothing inside depends on what is dropped.
     pub fn assemble(mut self, options: &ImportOptions) -> Result<Imported, DraftError> {
         let target = self.target(options)?;
-        cut::cut(&mut self, &target, options.with_other);
-        let derive = Derive { with_other: options.with_other, area: Some(target.clone()) };
+        let is_cut = !self.runs_past || options.bbox.is_some() || options.part.is_some();
+        if is_cut {
+            cut::cut(&mut self, &target, options.with_other);
+        }
+        let area = is_cut.then(|| target.clone());
+        let derive = Derive { with_other: options.with_other, area };
         let mut streets = street_graph::derive(&self.streets, &derive);
         mark_broken_ends(&mut streets, self.broken_ends);
         assign_levels(&mut streets, &Hierarchy::default());

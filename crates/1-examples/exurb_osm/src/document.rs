@@ -2,14 +2,16 @@
 //!
 //! Ids count from 1, nodes, ways and relations each on their own, in the order of the city's layers:
 //! equal cities give equal files. Streets share nodes where the street graph does; other ways join
-//! them where they pass the same point on the same level; outlines share corners.
+//! them where they pass the same point on the same level; outlines share corners. Ends of streets
+//! that run on outside the city say so as mappers do (`fixme=continue`); the target is an outline of
+//! its own, last, because streets run past it and bounds are but a box inside.
 
 use std::collections::BTreeMap;
 
 use exurb_city::{City, FeatureShape, Street, StreetGraph, Way};
 use exurb_geom::{GridPoint, Polygon};
 
-use crate::{areas, features};
+use crate::{areas, features, surfaces};
 
 /// Key and value.
 pub type Tag = (&'static str, String);
@@ -88,6 +90,8 @@ impl<'a> Document<'a> {
                 FeatureShape::Polygon(polygon) => out.polygon(polygon, tags, &mut corners),
             }
         }
+        let tags = vec![(surfaces::TARGET, "yes".to_owned())];
+        out.polygon(&city.target, tags, &mut BTreeMap::new());
         out
     }
 
@@ -95,7 +99,8 @@ impl<'a> Document<'a> {
     fn streets(&mut self, graph: &StreetGraph) -> BTreeMap<(GridPoint, i32), i64> {
         let mut junctions = vec![0; graph.node_bound()];
         for (id, node) in graph.nodes() {
-            junctions[id.index()] = self.node(node.at, Vec::new());
+            let runs_on = node.data.cut.then(|| ("fixme", "continue".to_owned()));
+            junctions[id.index()] = self.node(node.at, runs_on.into_iter().collect());
         }
         let mut at = BTreeMap::new();
         for (_, edge) in graph.edges() {

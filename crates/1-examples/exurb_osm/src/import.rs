@@ -36,6 +36,9 @@ pub fn draft(
     let streets = streets::read(&elements, &places);
     draft.streets.ways = streets.ways;
     draft.broken_ends = streets.broken_ends;
+    let node = |id: &i64| places::search(&elements.nodes, *id, 0).map(|i| &elements.nodes[i]);
+    let continued = elements.continued.iter().filter_map(node);
+    draft.broken_ends.extend(continued.filter_map(|node| places::project(&draft.frame, node)));
     surfaces::read(&elements, &places, &mut draft, &mut warnings);
 
     draft.metadata.name = name(file).into();
