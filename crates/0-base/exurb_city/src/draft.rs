@@ -75,6 +75,9 @@ pub enum DraftError {
     /// There is nothing in the part to keep.
     #[error("nothing lies inside {0}; choose another part of the map")]
     Empty(String),
+    /// There is nothing at all.
+    #[error("it holds no streets, buildings or areas that exurb knows")]
+    Nothing,
 }
 
 impl Draft {
@@ -132,7 +135,7 @@ impl Draft {
         let mut city = City::empty(self.frame, target);
         city.metadata = self.metadata;
         city.metadata.buildings_complete =
-            completeness::built_share(&streets, &self.buildings) >= completeness::COMPLETE_SHARE;
+            completeness::is_complete(&streets, &self.buildings);
         city.streets = Arc::new(streets);
         let other = |w: &crate::Way| !options.with_other && w.street.role() == Role::Other;
         city.other_ways = Arc::new(self.streets.ways.into_iter().filter(other).collect());
@@ -148,7 +151,7 @@ impl Draft {
     /// The extent, the part of it inside the box asked for, and the half asked for of the densest
     /// square of that.
     fn target(&self, options: &ImportOptions) -> Result<Polygon, DraftError> {
-        let mut target = self.area().ok_or_else(|| empty("the file"))?;
+        let mut target = self.area().ok_or(DraftError::Nothing)?;
         if let Some([sw, ne]) = options.bbox {
             let name = format!("the box {},{},{},{}", sw.lon, sw.lat, ne.lon, ne.lat);
             let asked = self.frame.rectangle_inside(sw, ne).ok_or_else(|| empty(&name))?;

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-use exurb_city::{City, Imported};
+use exurb_city::{City, Imported, completeness};
 use exurb_operation::{Example, Run, Scope};
 use serde_json::Value;
 
@@ -114,6 +114,9 @@ impl Recipe {
             city = outcome.city;
         }
         run.check()?;
+        // A made city is an example, too: have its streets their houses by now?
+        city.metadata.buildings_complete =
+            completeness::is_complete(&city.streets, &city.buildings);
         city.metadata.recipe = self.portable(registry).after(&history, registry).print()?;
         Ok(Made { city, seconds })
     }
