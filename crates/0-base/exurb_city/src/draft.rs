@@ -8,7 +8,7 @@ use exurb_graph::NodeId;
 use crate::hierarchy::{Hierarchy, assign_levels};
 use crate::street_graph::{self, Derive};
 use crate::{Area, Building, City, Feature, Metadata, Origin, Parcel, Provenance, Role};
-use crate::{StreetGraph, StreetMap, completeness, cut, densest_square, placing};
+use crate::{StreetGraph, StreetMap, completeness, cut, densest_square, facades, placing};
 
 /// What a reader delivers, in the local frame.
 #[derive(Clone, Debug)]
@@ -98,8 +98,9 @@ impl Draft {
         }
     }
 
-    /// The city of this draft, in steps: 1 the target; 2 what lies outside goes; 3 streets; 4
-    /// blocks; 5 what lies in which block; 6 what blocks are used for.
+    /// The city of this draft, in steps: 1 the target; 2 what lies outside goes; 3 streets, no wider
+    /// than the buildings beside them leave room; 4 blocks; 5 what lies in which block; 6 what blocks
+    /// are used for.
     ///
     /// Unless all of it belongs to the city, streets are cut at the target's edge, other ways lose the segments outside, buildings and
     /// parcels stay where their centroid lies inside, areas and lines are clipped. Because ways
@@ -115,6 +116,7 @@ impl Draft {
         let mut streets = street_graph::derive(&self.streets, &derive);
         mark_broken_ends(&mut streets, self.broken_ends);
         assign_levels(&mut streets, &Hierarchy::default());
+        facades::narrow_streets(&mut streets, &self.buildings);
 
         let mut blocks = crate::block::derive(&streets);
         for block in &mut blocks {
@@ -159,7 +161,9 @@ impl Draft {
             target = common.next().ok_or_else(|| empty(&name))?;
         }
         if let Some(part) = options.part {
-            let square = densest_square::densest_square(&self.streets.ways, target.bounds());
+            let counted = self.streets.ways.iter().filter(|w| w.street.role() != Role::Other);
+            let lines = counted.map(|w| &w.line[..]);
+            let square = densest_square::densest_square(lines, target.bounds());
             let half = rectangle(densest_square::half(square, part));
             let mut common =
                 half.into_iter().flat_map(|half| overlay::intersection(&half, &target));

@@ -18,7 +18,8 @@ pub struct Street {
     pub level: u8,
     /// Lanes in both directions together; 0 = unknown.
     pub lanes: u8,
-    /// Width of the carriageway in metres; 0 = unknown. See [`Street::width_m`].
+    /// Width of the carriageway in metres; 0 = unknown. See [`Street::width_m`]. On an imported map no
+    /// more than the facades beside it leave room for.
     pub width_m: f64,
     /// Driven along the line only.
     pub oneway: bool,
@@ -195,6 +196,25 @@ pub fn subgraph(graph: &StreetGraph, keep: impl Fn(EdgeId, &Street) -> bool) -> 
     out.remove_isolated_nodes();
     dissolve_all(&mut out);
     out.compacted()
+}
+
+/// Dead ends this near the border of an area were cut there, whether they say so or not, in metres.
+const BORDER_M: f64 = 1.0;
+
+/// Marks the ends within a metre of the area's border as cut.
+pub fn mark_ends_on_border<E: Clone>(graph: &mut Graph<Junction, E>, area: &Polygon) {
+    let ends: Vec<NodeId> = graph
+        .nodes()
+        .filter(|(id, node)| {
+            graph.degree(*id) == 1
+                && !node.data.cut
+                && area.boundary_distance_m(node.at.to_m()) < BORDER_M
+        })
+        .map(|(id, _)| id)
+        .collect();
+    for id in ends {
+        graph.node_mut(id).data.cut = true;
+    }
 }
 
 /// Is the node an intersection: not of degree 2? (Dead ends and cut ends are, changes of layer or

@@ -11,6 +11,7 @@
 //! | [`polyline`] | lengths, positions, curvature and distances of lines |
 //! | [`polygon`] | polygons with holes |
 //! | [`oriented_box`] | smallest enclosing rectangle |
+//! | [`rigid`] | motions that keep lengths |
 //! | [`split`] | cutting a polygon along a line |
 //! | [`voronoi`] | borders between groups of points |
 //! | [`overlay`] | intersection, difference, union |
@@ -18,6 +19,7 @@
 //! | [`box_grid`] | boxes that meet a box, for a set that does not change |
 //! | [`segment_grid`] | segments near a segment, for linework that does not change |
 //! | [`straight_skeleton`] | what sides sweep while they move inwards: hipped roofs |
+//! | [`mean_value`] | a map of a polygon's inside that follows its outline |
 //! | [`roadside`] | what streets take of the ground beside them |
 //! | [`segment_index`] | segments near a box, while they come and go |
 //! | [`point_index`] | points near a point, while they come and go |
@@ -36,7 +38,9 @@ pub mod box_grid;
 mod cell_table;
 mod convert;
 pub mod crs;
+pub mod enclosing_circle;
 pub mod grid;
+pub mod mean_value;
 pub mod offset;
 pub mod oriented_box;
 pub mod overlay;
@@ -45,6 +49,7 @@ pub mod point_index;
 pub mod polygon;
 pub mod polyline;
 pub mod projection;
+pub mod rigid;
 pub mod roadside;
 pub mod segment_grid;
 pub mod segment_index;
@@ -56,12 +61,14 @@ pub mod voronoi;
 pub use bounds::Bounds;
 pub use box_grid::BoxGrid;
 pub use crs::Crs;
+pub use enclosing_circle::Circle;
 pub use glam::DVec2 as Vec2;
 pub use grid::GridPoint;
 pub use oriented_box::OrientedBox;
 pub use point_index::PointIndex;
 pub use polygon::Polygon;
 pub use projection::{Frame, LonLat};
+pub use rigid::Rigid;
 pub use roadside::Roadside;
 pub use segment_grid::SegmentGrid;
 pub use segment_index::SegmentIndex;

@@ -8,6 +8,7 @@
 use exurb_geom::{GridPoint, PointIndex, Vec2, polyline};
 
 use super::growth::Growth;
+use super::network::Coherent;
 
 /// Streets of the example are looked at every so many metres.
 const STEP_M: f64 = 18.0;
@@ -19,6 +20,11 @@ const NEAR_M: f64 = 22.0;
 const SAME_COSINE: f64 = 0.94;
 /// How far around its root a piece is looked at, in metres.
 const LOOK_M: f64 = 160.0;
+/// Waiting streets are looked at up to this, in metres; they go on in a street at most so far beside
+/// them and turned by at most so much (18°).
+const MET_WITHIN_M: f64 = 300.0;
+const MET_M: f64 = 9.0;
+const MET_COSINE: f64 = 0.95;
 
 /// Points along the example's streets.
 #[derive(Debug)]
@@ -68,23 +74,54 @@ impl Fit {
     }
 }
 
-/// How the surroundings of the example's place `root` would lie with that on `at`.
-pub fn of(growth: &Growth, start: usize, root: Vec2, at: Vec2) -> Fit {
-    let samples = &growth.example(start).samples;
-    let shift = at - root;
+/// Waiting streets that lead onto a piece's ground, as far as it is looked at: how many would go on in
+/// one of its streets, and how many would not.
+pub fn met(growth: &Growth, piece: &Coherent) -> (u32, u32) {
+    let samples = &growth.plan.examples[piece.example].samples;
+    let (mut met, mut missed) = (0, 0);
+    let reach_m = piece.reach_m.min(MET_WITHIN_M);
+    for (_, leaving) in growth.seams.near(piece.at, reach_m) {
+        if growth.claims.owner(leaving.exit).is_some_and(|owner| owner != leaving.piece.id) {
+            continue;
+        }
+        let (at, direction) = (piece.original(leaving.exit), piece.motion.undo(leaving.direction));
+        let direction = direction.normalize_or_zero();
+        let mut found = false;
+        samples.index.visit(at, STEP_M, |id| {
+            let sample = samples.points[id as usize];
+            let offset = (sample.at - at).perp_dot(direction).abs();
+            found |= sample.is_main == growth.is_main
+                && offset < MET_M
+                && sample.direction.dot(direction).abs() > MET_COSINE;
+        });
+        if found {
+            met += 1;
+        } else {
+            missed += 1;
+        }
+    }
+    (met, missed)
+}
+
+/// How the surroundings of a piece's beginning would lie.
+pub fn of(growth: &Growth, piece: &Coherent) -> Fit {
+    let samples = &growth.plan.examples[piece.example].samples;
     let mut fit = Fit::default();
-    samples.index.visit(root, LOOK_M, |id| {
+    samples.index.visit(piece.source, LOOK_M, |id| {
         let sample = samples.points[id as usize];
-        let p = sample.at + shift;
+        let p = piece.place(sample.at);
         if growth.is_main && !sample.is_main || !growth.area.contains(GridPoint::round(p)) {
             return;
         }
         match growth.net.street_near(p, NEAR_M) {
             Some((distance, direction))
-                if distance < SAME_M && sample.direction.dot(direction).abs() > SAME_COSINE =>
+                if distance < SAME_M
+                    && piece.motion.apply(sample.direction).dot(direction).abs() > SAME_COSINE =>
             {
                 fit.same += 1;
             }
+            // On ground that another piece has claimed nothing will be laid.
+            _ if growth.claims.owner(p).is_some() => {}
             Some(_) => fit.amiss += 1,
             // The example's main streets have no place inside a cell.
             None if sample.is_main != growth.is_main => fit.amiss += 1,

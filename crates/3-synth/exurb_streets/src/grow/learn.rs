@@ -21,12 +21,16 @@ use super::{detect, fill, prepare};
 pub struct Vocabulary {
     /// Name of the example, for `source`.
     pub name: Arc<str>,
+    /// Its share where examples are mixed.
+    pub weight: f64,
     /// Main streets.
     pub main: Style,
     /// Local streets.
     pub local: Style,
     /// Points along all its streets.
     pub samples: Samples,
+    /// The ground it covers.
+    pub extent: Polygon,
     /// Where growth begins in the example unless told otherwise.
     pub center: Vec2,
     /// Side of a square as large as a large block (the upper quartile), metres.
@@ -172,7 +176,8 @@ pub fn learn(city: &City, params: &Params) -> Result<Vocabulary, Error> {
     let gates = exurb_city::laws::gates(city);
     let (center, large_block_m) = (center_of(&graph), large_block_m(&graph));
     let samples = Samples::of(graph.edges().map(|(id, e)| (e.line_m(), is_main[id.index()])));
-    Ok(Vocabulary { name, main, local, samples, center, large_block_m, gates })
+    let extent = city.target.clone();
+    Ok(Vocabulary { extent, name, weight: 1.0, main, local, samples, center, large_block_m, gates })
 }
 
 /// Side of a square as large as the upper quartile of the blocks that are no islands.
