@@ -136,8 +136,7 @@ impl Draft {
         }
         let mut city = City::empty(self.frame, target);
         city.metadata = self.metadata;
-        city.metadata.buildings_complete =
-            completeness::is_complete(&streets, &self.buildings);
+        city.metadata.buildings_complete = completeness::is_complete(&streets, &self.buildings);
         city.streets = Arc::new(streets);
         let other = |w: &crate::Way| !options.with_other && w.street.role() == Role::Other;
         city.other_ways = Arc::new(self.streets.ways.into_iter().filter(other).collect());

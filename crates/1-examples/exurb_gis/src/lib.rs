@@ -61,6 +61,11 @@ mod value;
 mod wkb;
 
 pub use error::Error;
-pub use geojson::{read_geojson, read_geojson_many, write_geojson, write_geojson_file};
-pub use geopackage::{read_geopackage, write_geopackage};
+pub use geojson::{
+    read_geojson, read_geojson_many, write_geojson, write_geojson_file, write_geojson_streets,
+};
+pub use geopackage::{
+    forget_journals, read_geopackage, write_geopackage, write_geopackage_streets,
+};
+pub use layers::Streets;
 pub use target::{TargetArea, read_target};

@@ -9,7 +9,7 @@ use exurb_geom::{Frame, GridPoint, LonLat};
 
 use crate::Error;
 use crate::beside::Beside;
-use crate::layers::{self, Kind, Layer, StreetRow, TargetRow};
+use crate::layers::{self, Kind, Layer, StreetRow, Streets, TargetRow};
 use crate::metadata;
 use crate::numbered::numbered;
 use crate::value::Value;
@@ -25,6 +25,15 @@ use crate::wkb::Shape;
 /// target; what travels with the city stands in foreign members (`exurb_version`,
 /// `exurb_attribution`, ...). Streams; O(n).
 pub fn write_geojson(city: &City, out: &mut impl Write) -> io::Result<()> {
+    write_geojson_streets(city, Streets::ALL, out)
+}
+
+/// [`write_geojson`], of streets and intersections what `streets` says.
+pub fn write_geojson_streets(
+    city: &City,
+    streets: Streets,
+    out: &mut impl Write,
+) -> io::Result<()> {
     let city = numbered(city);
     out.write_all(b"{\"type\":\"FeatureCollection\"")?;
     if let Some([sw, ne]) = city.lonlat_bbox() {
@@ -36,7 +45,7 @@ pub fn write_geojson(city: &City, out: &mut impl Write) -> io::Result<()> {
     }
     out.write_all(b",\n\"features\":[")?;
     let mut writer = Features { frame: &city.frame, out, count: 0 };
-    writer.city(&city)?;
+    writer.city(&city, streets)?;
     out.write_all(b"\n]}\n")
 }
 
@@ -58,16 +67,17 @@ struct Features<'a, W> {
 }
 
 impl<W: Write> Features<'_, W> {
-    fn city(&mut self, city: &City) -> io::Result<()> {
+    fn city(&mut self, city: &City, streets: Streets) -> io::Result<()> {
         self.layer(
             "target",
             &layers::TARGET,
             [(TargetRow { id: 1 }, Shape::Polygon(&city.target))],
         )?;
-        for (row, shape) in layers::street_rows(city) {
+        for (row, shape) in layers::street_rows(city).filter(|_| streets.lines) {
             self.feature("street", &layers::STREETS, &row, shape, of_street)?;
         }
-        self.layer("intersection", &layers::INTERSECTIONS, layers::intersection_rows(city))?;
+        let intersections = layers::intersection_rows(city).filter(|_| streets.intersections);
+        self.layer("intersection", &layers::INTERSECTIONS, intersections)?;
         let blocks = city.blocks.iter().map(|b| (b, Shape::Polygon(&b.polygon)));
         self.layer("block", &layers::BLOCKS, blocks)?;
         let parcels = city.parcels.iter().map(|p| (p, Shape::Polygon(&p.polygon)));
