@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use exurb_city::{City, FeatureShape, Street, StreetGraph, Way};
 use exurb_geom::{GridPoint, Polygon};
 
-use crate::{areas, features, surfaces};
+use crate::{areas, features, shared_walls, surfaces};
 
 /// Key and value.
 pub type Tag = (&'static str, String);
@@ -62,8 +62,9 @@ impl<'a> Document<'a> {
             out.other_way(way, &mut at);
         }
         let mut corners = BTreeMap::new();
-        for building in city.buildings.iter() {
-            out.polygon(&building.polygon, building_tags(building), &mut corners);
+        let outlines: Vec<&Polygon> = city.buildings.iter().map(|b| &b.polygon).collect();
+        for (building, rings) in city.buildings.iter().zip(shared_walls::rings(&outlines)) {
+            out.rings(&rings, building_tags(building), &mut corners);
         }
         for area in city.water.iter() {
             let mut tags = vec![("natural", "water".to_owned())];
@@ -145,17 +146,27 @@ impl<'a> Document<'a> {
         self.ways.len() as i64
     }
 
-    /// A closed way, or a multipolygon where there are holes.
     fn polygon(
         &mut self,
         polygon: &Polygon,
         tags: Vec<Tag>,
         corners: &mut BTreeMap<GridPoint, i64>,
     ) {
-        let simple = polygon.interiors().is_empty();
+        let rings: Vec<&[GridPoint]> = polygon.rings().collect();
+        self.rings(&rings, tags, corners);
+    }
+
+    /// A closed way, or a multipolygon where there are holes.
+    fn rings(
+        &mut self,
+        rings: &[impl AsRef<[GridPoint]>],
+        tags: Vec<Tag>,
+        corners: &mut BTreeMap<GridPoint, i64>,
+    ) {
+        let simple = rings.len() == 1;
         let mut members = Vec::new();
         let mut tags = Some(tags);
-        for (i, ring) in polygon.rings().enumerate() {
+        for (i, ring) in rings.iter().map(AsRef::as_ref).enumerate() {
             let mut nodes = Vec::with_capacity(ring.len() + 1);
             for p in ring {
                 let known = corners.get(p).copied();

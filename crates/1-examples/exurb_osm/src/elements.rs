@@ -49,6 +49,8 @@ pub struct Elements {
     pub bounds: Option<Bounds>,
     /// Attribution given in the file.
     pub attribution: Vec<String>,
+    /// What the server that made the file says went wrong.
+    pub remarks: Vec<String>,
     /// Written by this program: its attribution is the whole of it.
     pub is_ours: bool,
     pub nodes: Vec<Node>,
@@ -107,6 +109,7 @@ impl Elements {
         let shift = self.refs.len();
         self.bounds = self.bounds.or(other.bounds);
         self.attribution.append(&mut other.attribution);
+        self.remarks.append(&mut other.remarks);
         self.is_ours |= other.is_ours;
         self.nodes.append(&mut other.nodes);
         self.tagged.append(&mut other.tagged);
