@@ -31,6 +31,7 @@ mod fit;
 mod growth;
 mod layer;
 mod learn;
+mod lesson;
 mod network;
 mod params;
 mod patch;
@@ -90,6 +91,10 @@ impl Operation for Grow {
         }
         let frames = examples.iter().map(|e| e.city.frame.clone()).collect();
         Ok(Learned { vocabularies, frames })
+    }
+
+    fn describe(learned: &Learned) -> serde_json::Value {
+        lesson::describe(&learned.vocabularies)
     }
 
     fn edit(

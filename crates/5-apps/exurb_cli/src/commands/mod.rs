@@ -57,7 +57,7 @@ pub fn dispatch(matches: &ArgMatches, registry: &Registry) -> Result<(), Problem
         Some(("export", matches)) => export::run(matches),
         Some(("render", matches)) => render::run(matches),
         Some(("compare", matches)) => compare::run(matches),
-        Some(("learn", matches)) => learn::run(matches),
+        Some(("learn", matches)) => learn::run(matches, registry),
         Some(("schema", matches)) => schema::run(matches, registry),
         Some(("completions", matches)) => completions::run(matches, registry),
         Some((stage, matches)) => method::run(stage, matches, registry),
