@@ -8,7 +8,7 @@ use std::sync::Arc;
 use exurb_city::street_graph;
 use exurb_city::{Area, Building, City, Class, Feature, FeatureShape, ImportOptions, Junction};
 use exurb_city::{Origin, Provenance, Roof, Street, StreetGraph};
-use exurb_geom::{Frame, GridPoint, LonLat, Polygon};
+use exurb_geom::{Frame, GridPoint, LonLat, Polygon, polyline};
 use exurb_osm::{Format, read_bytes};
 use proptest::prelude::*;
 
@@ -142,7 +142,7 @@ fn as_imported(graph: &StreetGraph) -> StreetGraph {
 }
 
 /// Do the graphs have the same nodes within 2 cm, joined by like streets of the same length?
-fn assert_same_streets(given: &StreetGraph, from: &City, back: &City) {
+fn assert_same_streets(given: &StreetGraph, from_city: &City, back: &City) {
     let read = &back.streets;
     assert_eq!(given.node_count(), read.node_count());
     assert_eq!(given.edge_count(), read.edge_count());
@@ -152,7 +152,7 @@ fn assert_same_streets(given: &StreetGraph, from: &City, back: &City) {
     }
     let twin = |id| {
         // The frames have other origins and norths.
-        let at = back.frame.project(from.frame.unproject(given.node(id).at.to_m())).expect("near");
+        let at = back.frame.project(from_city.frame.unproject(given.node(id).at.to_m())).expect("near");
         index.within(at, 0.02).into_iter().map(|(n, _)| exurb_graph::NodeId(n)).collect::<Vec<_>>()
     };
     for (_, edge) in given.edges() {
@@ -161,12 +161,25 @@ fn assert_same_streets(given: &StreetGraph, from: &City, back: &City) {
         let like = read.edges().find(|(_, e)| {
             let same = (from.contains(&e.from) && to.contains(&e.to))
                 || (!edge.data.oneway && from.contains(&e.to) && to.contains(&e.from));
-            // The level in the hierarchy is no tag; it is found anew.
-            let data = Street { level: 0, ..e.data.clone() };
+            // The level in the hierarchy is no tag; it is found anew. Reading narrows a street to
+            // what the facades beside it leave.
+            let narrowed = e.data.width_m() < edge.data.width_m() && facade_beside(from_city, edge);
+            let width_m = if narrowed { edge.data.width_m } else { e.data.width_m };
+            let data = Street { level: 0, width_m, ..e.data.clone() };
             same && data == edge.data && (e.length_m() - edge.length_m()).abs() < 0.05
         });
         assert!(like.is_some(), "no street like {:?} of {} m", edge.data, edge.length_m());
     }
+}
+
+/// Does a building stand nearer than half the street's width and the 0.1 m kept free?
+fn facade_beside(city: &City, edge: &exurb_graph::Edge<Street>) -> bool {
+    let reach_m = edge.data.width_m() / 2.0 + 0.11;
+    let m = GridPoint::to_m;
+    city.buildings.iter().flat_map(|b| b.polygon.segments()).any(|(a, b)| {
+        let apart = |w: &[GridPoint]| polyline::segment_distance(m(a), m(b), m(w[0]), m(w[1]));
+        edge.line().windows(2).any(|w| apart(w) < reach_m)
+    })
 }
 
 fn assert_same_rest(given: &City, read: &City) {
