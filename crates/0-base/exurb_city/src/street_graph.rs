@@ -165,7 +165,13 @@ pub fn from_lines(lines: impl IntoIterator<Item = (Vec<GridPoint>, Street)>) -> 
 /// Dissolves every node of degree 2 between streets that continue each other. Cut ends stay. What
 /// does not make a node, such as lanes and width, is that of the longer of the two.
 pub fn dissolve_all(graph: &mut StreetGraph) {
-    let nodes: Vec<NodeId> = graph.nodes().map(|(id, _)| id).collect();
+    dissolve_where(graph, |_| true);
+}
+
+/// [`dissolve_all`] for the nodes at places that `may_go` accepts.
+pub fn dissolve_where(graph: &mut StreetGraph, may_go: impl Fn(GridPoint) -> bool) {
+    let nodes = graph.nodes().filter(|(_, n)| may_go(n.at));
+    let nodes: Vec<NodeId> = nodes.map(|(id, _)| id).collect();
     for node in nodes {
         let [a, b] = graph.darts(node) else { continue };
         let (a, b) = (*a, *b);

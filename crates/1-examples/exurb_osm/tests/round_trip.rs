@@ -152,7 +152,8 @@ fn assert_same_streets(given: &StreetGraph, from_city: &City, back: &City) {
     }
     let twin = |id| {
         // The frames have other origins and norths.
-        let at = back.frame.project(from_city.frame.unproject(given.node(id).at.to_m())).expect("near");
+        let at =
+            back.frame.project(from_city.frame.unproject(given.node(id).at.to_m())).expect("near");
         index.within(at, 0.02).into_iter().map(|(n, _)| exurb_graph::NodeId(n)).collect::<Vec<_>>()
     };
     for (_, edge) in given.edges() {

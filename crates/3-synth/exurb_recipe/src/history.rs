@@ -22,6 +22,7 @@ impl Recipe {
             if let Within::File(file) = &mut step.scope {
                 *file = file_name(file);
             }
+            step.fixed = step.fixed.as_deref().map(file_name);
         }
         recipe.normalise(registry);
         recipe

@@ -28,6 +28,7 @@
 pub mod builtin;
 mod document;
 mod error;
+mod fixed;
 mod format;
 mod history;
 mod open;

@@ -105,6 +105,9 @@ pub struct Step {
     /// Where it may change the city.
     #[serde(default, skip_serializing_if = "Within::is_all")]
     pub scope: Within,
+    /// A map whose streets lie there before the step and stay as they are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fixed: Option<PathBuf>,
     /// Its parameters; what is absent takes its default.
     #[serde(flatten)]
     pub params: Map<String, Value>,
@@ -232,8 +235,8 @@ impl Half {
 impl Step {
     /// An operation with every parameter at its default.
     pub fn new(op: impl Into<String>) -> Self {
-        let (seed, examples, scope) = (None, None, Within::All);
-        Self { op: op.into(), seed, examples, scope, params: Map::new() }
+        let (seed, examples, scope, fixed) = (None, None, Within::All, None);
+        Self { op: op.into(), seed, examples, scope, fixed, params: Map::new() }
     }
 }
 

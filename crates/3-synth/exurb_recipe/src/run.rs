@@ -8,7 +8,7 @@ use exurb_city::{City, Imported, completeness};
 use exurb_operation::{Example, Run, Scope};
 use serde_json::Value;
 
-use crate::{Error, Recipe, Registry, Source, Step, Target, Within, open, registry, target};
+use crate::{Error, Recipe, Registry, Source, Step, Target, Within, fixed, open, registry, target};
 
 /// What a recipe reads before it works.
 #[derive(Clone, Debug)]
@@ -105,6 +105,9 @@ impl Recipe {
             let operation = registry.find(&step.op).map_err(Error::Recipe)?;
             let scope = scope(&step.scope, &city, folder, run)?;
             let chosen = self.choose(step, &city, &examples);
+            if let Some(file) = &step.fixed {
+                fixed::lay(&mut city, file, &scope, folder, run)?;
+            }
             run.phase(&step.op);
             let run = run.seeded(step.seed.unwrap_or(self.seed));
             let params = Value::Object(step.params.clone());

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use exurb_city::Origin;
-use exurb_geom::{GridPoint, Polygon, Vec2, polyline};
+use exurb_geom::{GridPoint, Vec2, polyline};
 use exurb_graph::{Dart, EdgeId, Face, Faces, Graph, NodeId, noding};
 use exurb_operation::{Rng, Run, rng};
 use rayon::prelude::*;
@@ -15,9 +15,10 @@ use rayon::prelude::*;
 use super::claims::Claims;
 use super::error::Error;
 use super::fill;
-use super::growth::{Growth, Place};
+use super::ground::Ground;
+use super::growth::{Growth, Open, Place};
 use super::layer::NodeKind;
-use super::network::{Network, Piece, Vertex};
+use super::network::{Network, Piece, Standing, Vertex};
 use super::params::Params;
 use super::plan::Plan;
 use super::{synthesize, unreached};
@@ -58,12 +59,13 @@ pub fn make_berths(net: &mut Network) {
 pub fn grow(
     main: &Network,
     claims: &Claims,
-    area: &Polygon,
+    ground: &Ground,
     plan: &Plan,
     params: &Params,
     run: &Run,
 ) -> Result<Vec<Grown>, Error> {
-    let (graph, kinds) = border_graph(main, area);
+    let area = &ground.area;
+    let (graph, kinds) = border_graph(main, ground);
     let faces = Faces::of(&graph, |_| true);
     let at: BTreeMap<GridPoint, NodeId> = main.graph.nodes().map(|(id, n)| (n.at, id)).collect();
     let cells: Vec<&Face> = faces
@@ -80,6 +82,7 @@ pub fn grow(
             let claims = claims.window(&face.polygon);
             let mut growth = Growth::new(net, plan, false, &face.polygon, params, claims, rng);
             growth.queue.extend(seeds);
+            enter(&mut growth, ground);
             if main.graph.edge_count() == 0 {
                 for start in &plan.starts {
                     synthesize::begin(&mut growth, start);
@@ -99,27 +102,38 @@ pub fn grow(
     Ok(out)
 }
 
+/// Lets local streets of the city around a cell go on into it.
+fn enter(growth: &mut Growth, ground: &Ground) {
+    for (gate, line, street) in ground.local_gates(growth.area) {
+        let Some(node) = growth.net.node_near(gate.to_m(), 0.001, None) else { continue };
+        let far = growth
+            .net
+            .add_node(line[line.len() - 1], Vertex { outside: true, ..Vertex::default() });
+        let piece = Piece { standing: Standing::Beyond, ..Piece::of(street) };
+        growth.net.add_edge(node, far, line, piece);
+        growth.frontier.push_back(Open::Node(node));
+    }
+}
+
 fn cell_stream(face: &Face, run: &Run) -> Rng {
     let place = face.polygon.exterior().iter().min().copied().unwrap_or_default();
     run.stream(rng::place_key(place))
 }
 
-/// The main streets inside `area` and the area's own edge as one planar graph; for every edge the
-/// main street it is, or `None` on the edge of the area.
+/// The main streets inside the area and the area's own edge as one planar graph, with a node at each
+/// gate; for every edge the main street it is, or `None` on the edge of the area.
 fn border_graph(
     main: &Network,
-    area: &Polygon,
+    ground: &Ground,
 ) -> (Graph<(), Option<EdgeId>>, Vec<Option<EdgeId>>) {
     let mut lines: Vec<noding::Line<Option<EdgeId>>> = main
         .graph
         .edges()
+        .filter(|(_, e)| !matches!(e.data.standing, Standing::Rim | Standing::Beyond))
         .map(|(id, e)| noding::Line { points: e.line().to_vec(), level: 0, data: Some(id) })
         .collect();
-    for ring in area.rings() {
-        let mut points = ring.to_vec();
-        points.push(ring[0]);
-        lines.push(noding::Line { points, level: 0, data: None });
-    }
+    let rim = ground.border().into_iter();
+    lines.extend(rim.map(|points| noding::Line { points, level: 0, data: None }));
     let mut graph = Graph::new();
     let mut at = BTreeMap::new();
     for line in noding::node(lines, noding::Options::default()) {
@@ -168,8 +182,8 @@ fn open_cell(
         let (from, to) = (edge.from, edge.to);
         let ends = [node(from, &mut net, &mut border), node(to, &mut net, &mut border)];
         let piece = match kinds[dart.edge().index()] {
-            Some(id) => Piece { fixed: true, ..main.graph.edge(id).data.clone() },
-            None => Piece { street: Default::default(), batch: 0, fixed: true, rim: true },
+            Some(id) => Piece { standing: Standing::Main, ..main.graph.edge(id).data.clone() },
+            None => Piece::standing(Standing::Rim),
         };
         net.add_edge(ends[0], ends[1], edge.line().to_vec(), Piece { batch: 0, ..piece });
     }
@@ -216,7 +230,7 @@ fn spaced(
         let head = local[&graph.head(*dart)];
         let edge = net.graph.darts(tail).iter().find(|d| net.graph.head(**d) == head);
         let Some(piece) = edge.map(|d| &net.graph.edge(d.edge()).data) else { continue };
-        if piece.rim || piece.street.provenance.origin == Origin::Example {
+        if piece.is_rim() || piece.street.provenance.origin == Origin::Example {
             continue;
         }
         wait_m -= graph.edge(dart.edge()).length_m();
@@ -233,7 +247,7 @@ fn spaced(
 fn harvest(net: &Network) -> Vec<Grown> {
     net.graph
         .edges()
-        .filter(|(_, e)| !e.data.fixed)
+        .filter(|(_, e)| e.data.standing == Standing::Grown)
         .map(|(_, e)| Grown {
             line: e.line().to_vec(),
             piece: e.data.clone(),

@@ -8,6 +8,7 @@ use exurb_geom::{Polygon, SegmentIndex, offset, overlay};
 use exurb_graph::Faces;
 
 use super::finish::{Grown, keep_largest_piece};
+use super::network::{Piece, Standing};
 
 /// How far streets run past the target, in metres (contract: at least 20).
 pub const PAST_M: f64 = 22.0;
@@ -26,10 +27,19 @@ pub fn cut(graph: &mut Grown, target: &Polygon) {
     let around = around_inside(graph, target);
     let strip = offset::inset(target, -PAST_M);
     let area = strip.first().unwrap_or(target);
-    for node in graph.clip_some(area, |id| !around[id.index()]) {
+    let given: Vec<bool> = edges_by(graph, |piece| piece.standing == Standing::Given);
+    for node in graph.clip_some(area, |id| !around[id.index()] && !given[id.index()]) {
         graph.node_mut(node).data.outside = true;
     }
     keep_largest_piece(graph, |_| true);
+}
+
+fn edges_by(graph: &Grown, is: impl Fn(&Piece) -> bool) -> Vec<bool> {
+    let mut marks = vec![false; graph.edge_bound()];
+    for (id, edge) in graph.edges() {
+        marks[id.index()] = is(&edge.data);
+    }
+    marks
 }
 
 /// For every edge: does it lie around or inside a face that lies mostly in the target?

@@ -78,7 +78,7 @@ fn set_out(growth: &mut Growth, edge: exurb_graph::EdgeId, at: Vec2, place: Vec2
         })
         .unwrap_or(e.from);
     let near = growth.net.graph.node(nearest_end).at.to_m().distance(at);
-    let node = if e.data.fixed || near < super::network::JOIN_M {
+    let node = if e.data.is_fixed() || near < super::network::JOIN_M {
         nearest_end
     } else {
         growth.net.split(edge, GridPoint::round(at)).unwrap_or(nearest_end)

@@ -1,6 +1,6 @@
 //! From what grew to streets that keep the laws: dangling ends go, the target cuts, one piece stays.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 
 use exurb_city::street_graph::{self, StreetGraph};
 use exurb_city::{Junction, Origin, Role};
@@ -9,7 +9,8 @@ use exurb_graph::{Dart, EdgeId, Graph, NodeId};
 use exurb_operation::rng::place_key;
 
 use super::edge;
-use super::network::{Piece, Vertex};
+use super::ground::Ground;
+use super::network::{Piece, Standing, Vertex};
 
 /// Dead ends shorter than this are driveways.
 const LEAST_DEAD_END_M: f64 = 12.0;
@@ -21,13 +22,17 @@ const OPENED_LEAST_M: f64 = 55.0;
 /// What grew.
 pub type Grown = Graph<Vertex, Piece>;
 
-/// Finishes a grown network inside `target`.
+/// Finishes a grown network.
 pub fn finish(
     mut graph: Grown,
-    target: &Polygon,
+    ground: &Ground,
     dead_end_share: Option<f64>,
     remove_dangling: bool,
 ) -> StreetGraph {
+    let target = &ground.target;
+    if ground.around.is_some() {
+        close_gates(&mut graph, ground);
+    }
     if remove_dangling {
         match dead_end_share {
             Some(share) => settle_dead_ends(&mut graph, target, share),
@@ -35,13 +40,56 @@ pub fn finish(
         }
     }
     thin_crowds(&mut graph);
-    edge::cut(&mut graph, target);
+    match &ground.around {
+        None => edge::cut(&mut graph, target),
+        Some(around) => keep_joined(&mut graph, &around.gates),
+    }
     if remove_dangling {
         prune(&mut graph);
     }
     drop_stubs(&mut graph);
-    keep_largest_piece(&mut graph, |_| true);
-    to_streets(&graph)
+    if ground.around.is_none() {
+        keep_largest_piece(&mut graph, |_| true);
+    }
+    let mut streets = to_streets(&graph);
+    if ground.around.is_none() {
+        // At a gate two streets may have to stay apart.
+        street_graph::dissolve_all(&mut streets);
+    }
+    streets.compacted()
+}
+
+/// What ended at the border of the ground ends there no more, but at its gates.
+fn close_gates(graph: &mut Grown, ground: &Ground) {
+    let nodes: Vec<NodeId> = graph.nodes().map(|(id, _)| id).collect();
+    for id in nodes {
+        let at = graph.node(id).at;
+        let is_gate = ground.around.as_ref().is_some_and(|around| around.gates.contains(&at));
+        graph.node_mut(id).data.outside = is_gate;
+    }
+}
+
+/// Removes the pieces that hang together with no gate, unless none does.
+fn keep_joined(graph: &mut Grown, gates: &BTreeSet<GridPoint>) {
+    let mut parent: Vec<usize> = (0..graph.node_bound()).collect();
+    for (_, e) in graph.edges() {
+        let (a, b) = (root(&mut parent, e.from.index()), root(&mut parent, e.to.index()));
+        parent[a.max(b)] = a.min(b);
+    }
+    let at_gates = graph.nodes().filter(|(_, n)| gates.contains(&n.at));
+    let joined: BTreeSet<usize> = at_gates.map(|(id, _)| root(&mut parent, id.index())).collect();
+    if joined.is_empty() {
+        return keep_largest_piece(graph, |_| true);
+    }
+    let ids: Vec<EdgeId> = graph.edges().map(|(id, _)| id).collect();
+    for id in ids {
+        let edge = graph.edge(id);
+        let is_joined = joined.contains(&root(&mut parent, edge.from.index()));
+        if !is_joined && edge.data.standing != Standing::Given {
+            graph.remove_edge(id);
+        }
+    }
+    graph.remove_isolated_nodes();
 }
 
 /// Removes streets that end where the example does not, from their ends (section 4.5).
@@ -53,6 +101,9 @@ pub fn prune(graph: &mut Grown) {
             continue;
         }
         let dart = graph.darts(node)[0];
+        if graph.edge(dart.edge()).data.standing == Standing::Given {
+            continue;
+        }
         let head = graph.head(dart);
         graph.remove_edge(dart.edge());
         graph.remove_isolated_node(node);
@@ -85,6 +136,7 @@ fn settle_dead_ends(graph: &mut Grown, target: &Polygon, share: f64) {
             let long = graph.edge(own).length_m() > 2.0 * LEAST_DEAD_END_M;
             long && is_alone(graph, &index, own, n.at.to_m())
         })
+        .filter(|(id, _)| graph.edge(graph.darts(*id)[0].edge()).data.standing == Standing::Grown)
         .map(|(id, n)| (place_key(n.at), id))
         .collect();
     dangling.sort_unstable();
@@ -150,6 +202,7 @@ fn open_loops(graph: &mut Grown, target: &Polygon, index: &mut SegmentIndex, wan
     let mut candidates: Vec<(bool, u64, EdgeId)> = spare
         .into_iter()
         .map(|id| (id, graph.edge(id)))
+        .filter(|(_, e)| e.data.standing == Standing::Grown)
         .filter(|(_, e)| e.data.street.role() == Role::Local && e.length_m() > OPENED_LEAST_M)
         .filter(|(_, e)| [e.from, e.to].iter().all(|n| graph.degree(*n) > 2))
         .map(|(id, e)| {
@@ -249,6 +302,7 @@ fn thin_crowds(graph: &mut Grown) {
                 .darts(node)
                 .iter()
                 .map(|d| (d.edge(), graph.edge(d.edge())))
+                .filter(|(_, e)| e.data.standing == Standing::Grown)
                 .max_by(|a, b| {
                     let class = a.1.data.street.class.cmp(&b.1.data.street.class);
                     class.then(b.1.length_m().total_cmp(&a.1.length_m())).then(a.0.cmp(&b.0))
@@ -283,7 +337,8 @@ fn drop_stubs(graph: &mut Grown) {
                 _ => break head,
             }
         };
-        if length < LEAST_DEAD_END_M && graph.degree(at) > 2 {
+        let given = |id: &EdgeId| graph.edge(*id).data.standing == Standing::Given;
+        if length < LEAST_DEAD_END_M && graph.degree(at) > 2 && !path.iter().any(given) {
             for edge in path {
                 graph.remove_edge(edge);
             }
@@ -300,7 +355,14 @@ pub fn keep_largest_piece(graph: &mut Grown, counts: impl Fn(EdgeId) -> bool) {
         .filter(|(id, _)| counts(*id))
         .map(|(id, e)| (id, e.from.index(), e.to.index(), e.length_m()))
         .collect();
-    for (_, from, to, _) in &counted {
+    // What is given is one piece, wherever it lies.
+    let mut given = None;
+    for (id, from, to, _) in &counted {
+        if graph.edge(*id).data.standing == Standing::Given {
+            let first = *given.get_or_insert(*from);
+            let (a, b) = (root(&mut parent, first), root(&mut parent, *from));
+            parent[a.max(b)] = a.min(b);
+        }
         let (a, b) = (root(&mut parent, *from), root(&mut parent, *to));
         parent[a.max(b)] = a.min(b);
     }
@@ -311,14 +373,15 @@ pub fn keep_largest_piece(graph: &mut Grown, counts: impl Fn(EdgeId) -> bool) {
     let longest =
         (0..lengths.len()).max_by(|a, b| lengths[*a].total_cmp(&lengths[*b]).then(b.cmp(a)));
     for (id, from, ..) in counted {
-        if Some(root(&mut parent, from)) != longest {
+        let is_given = graph.edge(id).data.standing == Standing::Given;
+        if Some(root(&mut parent, from)) != longest && !is_given {
             graph.remove_edge(id);
         }
     }
     graph.remove_isolated_nodes();
 }
 
-/// The street graph of what grew, nodes of degree 2 dissolved.
+/// The street graph of what grew.
 fn to_streets(graph: &Grown) -> StreetGraph {
     let mut out = StreetGraph::new();
     let mut new_id = vec![NodeId(u32::MAX); graph.node_bound()];
@@ -330,6 +393,5 @@ fn to_streets(graph: &Grown) -> StreetGraph {
         let (from, to) = (new_id[edge.from.index()], new_id[edge.to.index()]);
         out.add_edge(from, to, edge.line().to_vec(), edge.data.street.clone());
     }
-    street_graph::dissolve_all(&mut out);
-    out.compacted()
+    out
 }

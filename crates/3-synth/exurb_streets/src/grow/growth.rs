@@ -191,7 +191,7 @@ impl<'a> Growth<'a> {
     pub fn break_off(&mut self, node: NodeId) {
         let Some(n) = self.net.graph.get_node(node) else { return };
         let is_linked = n.data.link.is_some();
-        let degree = self.net.graph.degree(node);
+        let degree = self.net.streets_at(node).count();
         let procedural = self.rng.random_bool(self.params.procedural);
         if degree > 2 || degree == 0 && !is_linked {
             return;
@@ -256,13 +256,13 @@ impl<'a> Growth<'a> {
             part: Some(part.clone()),
         };
         street.name = None;
-        Piece { street, batch, fixed: false, rim: false }
+        Piece { batch, ..Piece::of(street) }
     }
 
     /// A street made without a patch.
     pub fn made(&self, street: &Street, origin: Origin) -> Piece {
         let street = Street { provenance: Provenance::of(origin), name: None, ..street.clone() };
-        Piece { street, batch: 0, fixed: false, rim: false }
+        Piece::of(street)
     }
 
     /// Lays a line from `node` if it may be, ending wherever it must. Nodes of the other layer at
@@ -309,8 +309,12 @@ impl<'a> Growth<'a> {
     /// Does a line from a node of the cell's border begin outside the cell, where the cell sees no
     /// streets?
     fn leaves_cell(&self, node: NodeId, line: &[Vec2]) -> bool {
-        let on_border =
-            self.net.graph.darts(node).iter().any(|d| self.net.graph.edge(d.edge()).data.fixed);
+        let on_border = self
+            .net
+            .graph
+            .darts(node)
+            .iter()
+            .any(|d| self.net.graph.edge(d.edge()).data.is_fixed());
         on_border && !self.area.contains(GridPoint::round(polyline::point_at(line, 0.5)))
     }
 
@@ -332,8 +336,8 @@ impl<'a> Growth<'a> {
 
     /// Is a free place there: nothing in the way on the first metres of this direction?
     pub fn is_open(&self, node: NodeId, direction: Vec2, least_rad: f64) -> bool {
-        self.net.graph.darts(node).iter().all(|dart| {
-            trig::angle_between(self.net.graph.direction(*dart, 15.0), direction) >= least_rad
+        self.net.streets_at(node).all(|dart| {
+            trig::angle_between(self.net.graph.direction(dart, 15.0), direction) >= least_rad
         })
     }
 }

@@ -28,6 +28,7 @@ mod error;
 mod fill;
 mod finish;
 mod fit;
+mod ground;
 mod growth;
 mod layer;
 mod learn;
@@ -49,12 +50,12 @@ mod unreached;
 use std::sync::Arc;
 
 use exurb_city::hierarchy::{Hierarchy, assign_levels};
-use exurb_city::street_graph::{self, StreetGraph};
+use exurb_city::street_graph::StreetGraph;
 use exurb_city::{City, Edit, block};
-use exurb_geom::Polygon;
 use exurb_operation::{Card, Example, Failure, Operation, Run, Scope};
 
 pub use error::Error;
+pub use ground::Ground;
 pub use learn::{Vocabulary, learn};
 pub use params::Params;
 pub use plan::{Guide, Motion, Plan, Start};
@@ -104,15 +105,21 @@ impl Operation for Grow {
         params: &Params,
         run: &Run,
     ) -> Result<Edit, Failure> {
-        let target = match scope {
-            Scope::Inside(polygon) => polygon,
-            Scope::All | Scope::Blocks(_) => &city.target,
+        let ground = match scope {
+            Scope::Inside(polygon) => Ground::inside(city, polygon),
+            Scope::All | Scope::Blocks(_) => {
+                Ground::open(city, &city.target, synthesize::margin_m(&learned.vocabularies))
+            }
         };
-        let plan = learned.plan(city, target, params, run).map_err(failure)?;
-        let streets = synthesize(target, &plan, params, run).map_err(failure)?;
-        let mut streets = lawful(city, target, streets, run);
+        let plan = learned.plan(city, &ground, params, run).map_err(failure)?;
+        let streets = synthesize(&ground, &plan, params, run).map_err(failure)?;
+        let mut streets = lawful(city, &ground, streets, run);
         assign_levels(&mut streets, &Hierarchy::default());
         run.phase("blocks");
+        if ground.around.is_some() {
+            ground.restore_levels(&mut streets);
+            return Ok(exurb_city::redevelop(city, streets, &ground.target));
+        }
         let blocks = block::derive(&streets);
         let gates = learned.vocabularies.first().map(|v| v.gates.clone());
         Ok(Edit {
@@ -129,10 +136,11 @@ impl Learned {
     fn plan(
         &self,
         city: &City,
-        target: &Polygon,
+        ground: &Ground,
         params: &Params,
         run: &Run,
     ) -> Result<Plan<'_>, Error> {
+        let target = &ground.target;
         let (examples, frames) = (&self.vocabularies[..], &self.frames[..]);
         if params.interpolation.is_some() && examples.len() != 2 {
             let count = examples.len();
@@ -142,7 +150,7 @@ impl Learned {
         }
         Ok(Plan {
             examples,
-            starts: starts::starts(city, target, examples, frames, params)?,
+            starts: starts::starts(city, ground, examples, frames, params)?,
             blend_m: params.blend * target.bounds().size().max_element(),
             interpolation: params.interpolation,
             rotate_rad: params.rotate.to_radians(),
@@ -154,19 +162,20 @@ impl Learned {
 
 /// The streets without those that break a law of the city model. Growth lays none; what the target's
 /// edge cuts off and turns outwards can meet by a hair.
-fn lawful(city: &City, target: &Polygon, streets: StreetGraph, run: &Run) -> StreetGraph {
+fn lawful(city: &City, ground: &Ground, streets: StreetGraph, run: &Run) -> StreetGraph {
     const LAWS: [&str; 4] = [
         "crossings_without_node",
         "touching_vertices",
         "self_intersecting",
         "duplicate_length_share",
     ];
-    let mut checked = City::empty(city.frame.clone(), target.clone());
+    let mut checked = City::empty(city.frame.clone(), ground.target.clone());
     checked.streets = Arc::new(streets);
     for _ in 0..4 {
         let report = exurb_city::laws::laws(&checked);
+        let broken = report.breaches.iter().filter(|b| LAWS.contains(&b.law)).map(|b| b.id - 1);
         let mut broken: Vec<u32> =
-            report.breaches.iter().filter(|b| LAWS.contains(&b.law)).map(|b| b.id - 1).collect();
+            broken.filter(|id| ground.may_remove(&checked.streets, *id)).collect();
         broken.sort_unstable();
         broken.dedup();
         if broken.is_empty() {
@@ -181,7 +190,7 @@ fn lawful(city: &City, target: &Polygon, streets: StreetGraph, run: &Run) -> Str
             graph.remove_edge(exurb_graph::EdgeId(id));
         }
         graph.remove_isolated_nodes();
-        street_graph::dissolve_all(&mut graph);
+        ground.dissolve(&mut graph);
         checked.streets = Arc::new(graph.compacted());
     }
     Arc::unwrap_or_clone(checked.streets)

@@ -21,6 +21,9 @@ pub const JOIN_M: f64 = 14.0;
 pub const SHORTEST_M: f64 = 10.0;
 /// Streets of different origin meet at this angle at least.
 const LEAST_ANGLE_RAD: f64 = 0.6;
+/// A street that comes to the border of the ground is led to the end of a street of the city around
+/// within this.
+const GATE_M: f64 = 70.0;
 /// No more streets than this meet in one place.
 const MOST_STREETS: usize = 5;
 
@@ -74,10 +77,45 @@ pub struct Piece {
     /// Pieces laid in one go: taken from one place of the example, they may be as near to each other
     /// as they were there.
     pub batch: u32,
-    /// Streets may end on it at its nodes only.
-    pub fixed: bool,
-    /// Not a street but the edge of the grown area.
-    pub rim: bool,
+    /// What may be done with it.
+    pub standing: Standing,
+}
+
+/// What growth may do with a piece of street.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Standing {
+    /// Grown: may be split, and may go in the end.
+    Grown,
+    /// Given: may be split, stays.
+    Given,
+    /// Of the main streets around a cell: streets may end on it at its nodes only.
+    Main,
+    /// Beyond the border of the ground: in view only.
+    Beyond,
+    /// Not a street but the border of the ground.
+    Rim,
+}
+
+impl Piece {
+    /// A grown piece of that street, laid alone.
+    pub fn of(street: Street) -> Self {
+        Self { street, batch: 0, standing: Standing::Grown }
+    }
+
+    /// A piece that is no street.
+    pub fn standing(standing: Standing) -> Self {
+        Self { standing, ..Self::of(Street::default()) }
+    }
+
+    /// Not a street?
+    pub fn is_rim(&self) -> bool {
+        self.standing == Standing::Rim
+    }
+
+    /// May streets end on it at its nodes only?
+    pub fn is_fixed(&self) -> bool {
+        !matches!(self.standing, Standing::Grown | Standing::Given)
+    }
 }
 
 /// The growing network.
@@ -203,7 +241,7 @@ impl Network {
             let q = polyline::nearest_on_segment(e.a, e.b, p).0;
             let d = q.distance(p);
             let better = best.is_none_or(|(least, id, _)| d < least || (d == least && e.id < id));
-            if d <= radius_m && better && !self.graph.edge(EdgeId(e.id)).data.rim {
+            if d <= radius_m && better && !self.graph.edge(EdgeId(e.id)).data.is_rim() {
                 best = Some((d, e.id, q));
             }
             true
@@ -216,7 +254,7 @@ impl Network {
     pub fn grain_near(&self, p: Vec2, radius_m: f64) -> Vec2 {
         let (mut sum, mut total) = (Vec2::ZERO, 0.0);
         self.segments.visit(Bounds { min: p - radius_m, max: p + radius_m }, |e| {
-            if !self.graph.edge(EdgeId(e.id)).data.rim {
+            if !self.graph.edge(EdgeId(e.id)).data.is_rim() {
                 let length = e.a.distance(e.b);
                 sum += fourfold((e.b - e.a) / length.max(1e-9)) * length;
                 total += length;
@@ -232,7 +270,7 @@ impl Network {
         self.segments.visit(Bounds { min: p - radius_m, max: p + radius_m }, |e| {
             let d = polyline::nearest_on_segment(e.a, e.b, p).0.distance(p);
             let nearer = best.is_none_or(|(least, _)| d < least);
-            if d <= radius_m && nearer && !self.graph.edge(EdgeId(e.id)).data.rim {
+            if d <= radius_m && nearer && !self.graph.edge(EdgeId(e.id)).data.is_rim() {
                 best = Some((d, (e.b - e.a).normalize_or_zero()));
             }
             true
@@ -337,9 +375,25 @@ impl Network {
         }
     }
 
+    /// The streets at a node: all but the border of the ground.
+    pub fn streets_at(&self, node: NodeId) -> impl Iterator<Item = Dart> + '_ {
+        let darts = self.graph.darts(node).iter().copied();
+        darts.filter(|dart| !self.graph.edge(dart.edge()).data.is_rim())
+    }
+
     /// Is the node full?
     pub fn crowded(&self, node: NodeId) -> bool {
-        self.graph.degree(node) >= MOST_STREETS
+        self.streets_at(node).count() >= MOST_STREETS
+    }
+
+    /// The nearest place within reach of `p` where a street of the city around ends and nothing has
+    /// come from this side.
+    fn gate_near(&self, p: Vec2) -> Option<NodeId> {
+        self.nodes_near(p, GATE_M).find(|node| {
+            let mut streets = self.streets_at(*node);
+            let is_beyond = |d: Dart| self.graph.edge(d.edge()).data.standing == Standing::Beyond;
+            streets.next().is_some_and(is_beyond) && streets.next().is_none()
+        })
     }
 
     /// The smallest angle between the start of `line` and the streets at `node`, in radians. Streets of
@@ -351,7 +405,7 @@ impl Network {
             .iter()
             .filter(|dart| {
                 let piece = &self.graph.edge(dart.edge()).data;
-                !piece.rim && (batch == 0 || piece.batch != batch)
+                !piece.is_rim() && (batch == 0 || piece.batch != batch)
             })
             .map(|dart| trig::angle_between(self.graph.direction(*dart, 15.0), d))
             .fold(f64::INFINITY, f64::min)
@@ -404,7 +458,14 @@ impl Network {
                 None => Some((line.to_vec(), Landing::Free)),
             };
         };
-        if self.graph.edge(contact.edge).data.rim {
+        if self.graph.edge(contact.edge).data.is_rim() {
+            let cut = polyline::part(line, 0.0, contact.along_m);
+            if let Some(gate) = self.gate_near(contact.at) {
+                let bent = bend(&cut, self.graph.node(gate).at.to_m());
+                if self.first_contact(from, Some(gate), &bent).is_none() {
+                    return Some((bent, Landing::Node(gate)));
+                }
+            }
             let end = (contact.along_m - 0.1).max(0.0);
             return Some((polyline::part(line, 0.0, end), Landing::Rim));
         }
@@ -421,13 +482,13 @@ impl Network {
         at: Vec2,
     ) -> Option<(Vec<Vec2>, Landing)> {
         let e = self.graph.edge(edge);
-        if e.data.rim {
+        if e.data.is_rim() {
             return None;
         }
         let mut ends = [e.from, e.to].map(|n| (self.graph.node(n).at.to_m().distance(at), n));
         ends.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let (distance, node) = ends[0];
-        if e.data.fixed || distance < JOIN_M {
+        if e.data.is_fixed() || distance < JOIN_M {
             if node == from || distance > 2.0 * JOIN_M {
                 return None;
             }
@@ -491,7 +552,7 @@ impl Network {
             self.segments.visit(bounds, |e| {
                 let id = EdgeId(e.id);
                 let edge = self.graph.edge(id);
-                if edge.data.rim {
+                if edge.data.is_rim() {
                     return true;
                 }
                 let touches_from = edge.from == from || edge.to == from;
@@ -537,7 +598,7 @@ impl Network {
             self.segments.visit(Bounds { min: end - JOIN_M, max: end + JOIN_M }, |e| {
                 let near =
                     polyline::nearest_on_segment(e.a, e.b, end).0.distance(end) < JOIN_M - 1.0;
-                clear &= !near || own(EdgeId(e.id)) || self.graph.edge(EdgeId(e.id)).data.rim;
+                clear &= !near || own(EdgeId(e.id)) || self.graph.edge(EdgeId(e.id)).data.is_rim();
                 clear
             });
             return clear;
@@ -548,7 +609,7 @@ impl Network {
     /// Streets that end at `node`, as lines that arrive there, each up to the next node that is not
     /// of degree 2.
     pub fn arriving(&self, node: NodeId) -> Vec<Vec<Vec2>> {
-        self.graph.darts(node).iter().map(|dart| self.arriving_along(*dart)).collect()
+        self.streets_at(node).map(|dart| self.arriving_along(dart)).collect()
     }
 
     fn arriving_along(&self, leaving: Dart) -> Vec<Vec2> {
@@ -618,7 +679,7 @@ mod tests {
     use super::*;
 
     fn piece(batch: u32) -> Piece {
-        Piece { street: Street::default(), batch, fixed: false, rim: false }
+        Piece { batch, ..Piece::of(Street::default()) }
     }
 
     fn with_street() -> (Network, NodeId) {

@@ -64,7 +64,7 @@ pub fn adopt(growth: &mut Growth, end: ChainEnd, piece: Coherent) {
     for (i, link) in layer.via(end) {
         let p = piece.place(line[i]);
         let Some((edge, at)) = growth.net.edge_near(p, ADOPTED_M) else { continue };
-        if !growth.holds(&piece, at) || growth.net.graph.edge(edge).data.fixed {
+        if !growth.holds(&piece, at) || growth.net.graph.edge(edge).data.is_fixed() {
             continue;
         }
         if let Some(middle) = growth.net.split(edge, GridPoint::round(at)) {

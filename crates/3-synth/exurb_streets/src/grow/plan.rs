@@ -149,6 +149,7 @@ impl Plan<'_> {
         let first = self.starts.first().map_or(0, |s| s.example);
         let weights = match self.interpolation {
             Some(share) => vec![share, 1.0 - share],
+            None if self.starts.is_empty() => self.examples.iter().map(|e| e.weight).collect(),
             None if self.starts.iter().all(|s| s.example == first) => return first,
             None => self.weights(p),
         };

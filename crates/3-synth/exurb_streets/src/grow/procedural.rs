@@ -9,7 +9,7 @@ use rand::RngExt;
 use rand_distr::{Distribution, Normal};
 
 use super::growth::Growth;
-use super::network::{Landing, Vertex, Wish};
+use super::network::{Landing, Standing, Vertex, Wish};
 
 /// Pieces of a procedural street.
 const STEPS: usize = 5;
@@ -25,13 +25,8 @@ pub fn connect(growth: &mut Growth, node: NodeId) -> bool {
     let at = n.at.to_m();
     let reach_m = growth.street_m(node).min(250.0);
     let street = street_like(growth, node);
-    let ahead: Vec<Vec2> = growth
-        .net
-        .graph
-        .darts(node)
-        .iter()
-        .map(|dart| -growth.net.graph.direction(*dart, 15.0))
-        .collect();
+    let ahead: Vec<Vec2> =
+        growth.net.streets_at(node).map(|dart| -growth.net.graph.direction(dart, 15.0)).collect();
     for direction in ahead {
         if !growth.is_open(node, direction, LEAST_ANGLE_RAD) {
             continue;
@@ -87,8 +82,9 @@ fn lands_ahead(
 
 /// Grows streets from statistics so that the corners at `node` come close to right angles.
 pub fn expand(growth: &mut Growth, node: NodeId) {
-    let first = match growth.net.graph.darts(node).first() {
-        Some(dart) => growth.net.graph.direction(*dart, 15.0),
+    let first = growth.net.streets_at(node).next();
+    let first = match first {
+        Some(dart) => growth.net.graph.direction(dart, 15.0),
         None => trig::unit(growth.rng.random_range(0.0..PI)),
     };
     for k in 0..4 {
@@ -139,7 +135,8 @@ fn street_like(growth: &Growth, node: NodeId) -> Street {
         .darts(node)
         .iter()
         .map(|d| &growth.net.graph.edge(d.edge()).data)
-        .filter(|p| !p.rim && !p.fixed && is_main(&p.street) == growth.is_main)
+        .filter(|p| p.standing != Standing::Rim && p.standing != Standing::Main)
+        .filter(|p| is_main(&p.street) == growth.is_main)
         .map(|p| &p.street)
         .min_by_key(|s| s.class);
     match like {

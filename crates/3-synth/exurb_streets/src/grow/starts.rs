@@ -4,25 +4,31 @@ use exurb_city::City;
 use exurb_geom::{Frame, GridPoint, LonLat, Polygon, Vec2};
 
 use super::error::Error;
+use super::ground::Ground;
 use super::learn::Vocabulary;
 use super::params::{self, Params};
 use super::plan::{Guide, Start};
 
-/// Growth begins as told: at the points of the guideline, at the named places, else spread over the
-/// target, the first in its middle. `frames` are those of the examples.
+/// Growth begins as told: at the points of the guideline, at the named places, else from the streets
+/// that are there, else spread over the target, the first in its middle. `frames` are those of the
+/// examples.
 pub fn starts(
     city: &City,
-    target: &Polygon,
+    ground: &Ground,
     vocabularies: &[Vocabulary],
     frames: &[Frame],
     params: &Params,
 ) -> Result<Vec<Start>, Error> {
+    let target = &ground.target;
     let count = vocabularies.len();
     let start = |i: usize, at: Vec2, source: Option<Vec2>| {
         let example = i % count;
         Start { at, example, source: source.unwrap_or(vocabularies[example].center) }
     };
     let named = if params.guide.is_empty() { &params.start } else { &params.guide };
+    if named.is_empty() && params.starts == 1 && ground.has_streets() {
+        return Ok(Vec::new());
+    }
     if named.is_empty() {
         let places = spread(target, (params.starts as usize).max(count));
         return Ok(places.into_iter().enumerate().map(|(i, at)| start(i, at, None)).collect());

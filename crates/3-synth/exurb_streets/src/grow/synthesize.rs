@@ -3,15 +3,17 @@
 use std::collections::BTreeMap;
 
 use exurb_city::street_graph::StreetGraph;
-use exurb_geom::{GridPoint, Polygon, offset};
-use exurb_graph::{Graph, NodeId};
+use exurb_geom::GridPoint;
+use exurb_graph::{EdgeId, Graph, NodeId};
 use exurb_operation::Run;
 
 use super::cells::{self, Grown};
 use super::claims::Claims;
 use super::error::Error;
+use super::ground::Ground;
 use super::growth::{Growth, Place};
-use super::network::{Coherent, Network, Piece, Vertex};
+use super::learn::Vocabulary;
+use super::network::{Coherent, Network, Piece, Standing, Vertex};
 use super::params::Params;
 use super::placing;
 use super::plan::{Plan, Start};
@@ -21,42 +23,43 @@ use super::{fill, finish, unreached};
 /// and its edge looks like its middle; by no more and no less than this.
 const MARGIN_M: std::ops::RangeInclusive<f64> = 90.0..=350.0;
 
-/// Grows streets in `target`.
+/// The margin that growth needs around a target in the open.
+pub fn margin_m(examples: &[Vocabulary]) -> f64 {
+    let large_m = examples.iter().map(|e| e.large_block_m).fold(0.0, f64::max);
+    large_m.clamp(*MARGIN_M.start(), *MARGIN_M.end())
+}
+
+/// Grows streets on that ground; the result holds those of the city around, too.
 pub fn synthesize(
-    target: &Polygon,
+    ground: &Ground,
     plan: &Plan,
     params: &Params,
     run: &Run,
 ) -> Result<StreetGraph, Error> {
-    let margin_m = plan.examples.iter().map(|e| e.large_block_m).fold(0.0, f64::max);
-    let grown = offset::inset(target, -margin_m.clamp(*MARGIN_M.start(), *MARGIN_M.end()));
-    let area = grown.first().unwrap_or(target);
-
     run.phase("main streets");
-    let (mut main, claims) = grow_main(plan, area, params, run)?;
+    let (mut main, claims) = grow_main(ground, plan, params, run)?;
     if params.remove_dangling {
         remove_open_ends(&mut main, plan);
     }
     cells::make_berths(&mut main);
 
     run.phase("local streets");
-    let local = cells::grow(&main, &claims, area, plan, params, run)?;
+    let local = cells::grow(&main, &claims, ground, plan, params, run)?;
 
     run.phase("finish");
     let graph = join(main, local);
-    let streets = finish::finish(graph, target, dead_end_share(plan), params.remove_dangling);
+    let streets = finish::finish(graph, ground, dead_end_share(plan), params.remove_dangling);
     if streets.edge_count() == 0 {
-        let area_km2 = target.area_m2() / 1e6;
+        let area_km2 = ground.target.area_m2() / 1e6;
         return Err(Error::Nothing { starts: plan.starts.len(), area_km2 });
     }
-    Ok(streets)
+    Ok(ground.whole(streets))
 }
 
 /// The share of dead ends to aim at: the mean of the examples' shares by their weights.
 fn dead_end_share(plan: &Plan) -> Option<f64> {
     let (mut sum, mut total) = (0.0, 0.0);
-    for start in &plan.starts {
-        let example = &plan.examples[start.example];
+    for example in plan.examples {
         sum += example.weight * example.gates.get("dead_end_share")?;
         total += example.weight;
     }
@@ -64,15 +67,18 @@ fn dead_end_share(plan: &Plan) -> Option<f64> {
 }
 
 fn grow_main(
+    ground: &Ground,
     plan: &Plan,
-    area: &Polygon,
     params: &Params,
     run: &Run,
 ) -> Result<(Network, Claims), Error> {
+    let area = &ground.area;
     let first = plan.example_at(area.interior_point());
-    let net = Network::new(plan.statistics(first, true).length_mean_m);
+    let mut net = Network::new(plan.statistics(first, true).length_mean_m);
+    ground.furnish(&mut net);
     let claims = Claims::new(area);
     let mut growth = Growth::new(net, plan, true, area, params, claims, run.stream(0));
+    ground.begin_main(&mut growth);
     for start in &plan.starts {
         begin(&mut growth, start);
     }
@@ -116,7 +122,9 @@ fn remove_open_ends(net: &mut Network, plan: &Plan) {
     let mut open: Vec<NodeId> = net.graph.nodes().map(|(id, _)| id).collect();
     while let Some(node) = open.pop() {
         let Some(n) = net.graph.get_node(node) else { continue };
-        if n.data.dead_end || n.data.outside || net.graph.degree(node) != 1 {
+        let is_open = net.graph.degree(node) == 1
+            && net.graph.edge(net.graph.darts(node)[0].edge()).data.standing == Standing::Grown;
+        if n.data.dead_end || n.data.outside || !is_open {
             continue;
         }
         let goes_on = n.data.link.zip(n.data.piece).is_some_and(|(link, piece)| {
@@ -141,6 +149,13 @@ fn remove_open_ends(net: &mut Network, plan: &Plan) {
 /// which they know by their place.
 fn join(main: Network, local: Vec<Grown>) -> Graph<Vertex, Piece> {
     let mut graph = main.graph;
+    let ids: Vec<EdgeId> = graph.edges().map(|(id, _)| id).collect();
+    for id in ids {
+        if matches!(graph.edge(id).data.standing, Standing::Rim | Standing::Beyond) {
+            graph.remove_edge(id);
+        }
+    }
+    graph.remove_isolated_nodes();
     let mut at: BTreeMap<GridPoint, NodeId> = graph.nodes().map(|(id, n)| (n.at, id)).collect();
     for street in local {
         let (Some(first), Some(last)) = (street.line.first(), street.line.last()) else { continue };

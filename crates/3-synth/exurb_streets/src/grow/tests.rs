@@ -135,6 +135,128 @@ fn several_starts_and_named_places_grow_one_piece() {
     assert!(error.to_string().contains("the start 1,1 lies outside the target"), "{error}");
 }
 
+/// Streets of the city that lie outside `area`, as lines, in order.
+fn outside(city: &City, area: &Polygon) -> Vec<(Vec<GridPoint>, Street)> {
+    let edges = city.streets.edges().map(|(_, e)| (e.line().to_vec(), e.data.clone()));
+    let is_outside = |line: &[GridPoint]| {
+        line.iter().all(|p| !area.contains(*p) && area.boundary_distance_m(p.to_m()) > 0.01)
+    };
+    let mut kept: Vec<_> = edges.filter(|(line, _)| is_outside(line)).collect();
+    kept.sort_by(|a, b| a.0.cmp(&b.0));
+    kept
+}
+
+#[test]
+fn a_part_grown_anew_leaves_the_rest_as_it_is_and_joins_it() {
+    let city = grid(16);
+    // Obliquely across the blocks, so that most of its border meets streets anywhere.
+    let corners = [(310.0, 420.0), (1130.0, 290.0), (1270.0, 1080.0), (440.0, 1210.0)];
+    let ring = corners.map(|(x, y)| GridPoint::m(x, y)).to_vec();
+    let area = Polygon::new(ring, vec![]).expect("has area");
+    let mut example = grid(12);
+    example.metadata.name = "other".into();
+    let examples = [Example::new(example)];
+    for seed in 1..4 {
+        let document = serde_json::json!({ "rotate": 20.0 * seed as f64 });
+        let outcome = erase::<super::Grow>()
+            .run(&city, &Scope::Inside(area.clone()), &examples, document, &Run::new(seed))
+            .expect("grows");
+        let new = outcome.city;
+        assert_lawful(&new);
+        assert_eq!(outside(&city, &area), outside(&new, &area));
+        let (copied, ..) = shares_by_origin(&new.streets);
+        assert!(copied > 0.15, "{copied}");
+        let border =
+            new.streets.nodes().filter(|(_, n)| area.boundary_distance_m(n.at.to_m()) < 0.01);
+        let degrees: Vec<usize> = border.map(|(id, _)| new.streets.degree(id)).collect();
+        let joined = degrees.iter().filter(|d| **d > 1).count();
+        assert!(joined * 2 > degrees.len(), "{joined} of {}", degrees.len());
+    }
+}
+
+#[test]
+fn given_streets_stay_and_are_joined() {
+    let sketched = |class| Street {
+        class,
+        provenance: exurb_city::Provenance::of(exurb_city::Origin::Sketch),
+        ..Street::default()
+    };
+    let line = |points: &[(f64, f64)]| points.iter().map(|(x, y)| GridPoint::m(*x, *y)).collect();
+    let given: Vec<(Vec<GridPoint>, Street)> = vec![
+        (line(&[(100.0, 200.0), (700.0, 500.0), (1100.0, 1000.0)]), sketched(Class::Primary)),
+        (line(&[(200.0, 1000.0), (500.0, 900.0)]), sketched(Class::Residential)),
+    ];
+    let example = grid(16);
+    let mut empty = City::empty(example.frame.clone(), square(Vec2::splat(600.0), 1200.0));
+    empty.streets = Arc::new(street_graph::from_lines(given.clone()));
+    let city = erase::<super::Grow>()
+        .run(&empty, &Scope::All, &[Example::new(example)], params(0.5), &Run::new(1))
+        .expect("grows")
+        .city;
+    assert_lawful(&city);
+    for (line, street) in given {
+        let kept = city.streets.edges().filter(|(_, e)| {
+            e.data.provenance.origin == exurb_city::Origin::Sketch && e.data.class == street.class
+        });
+        let length: f64 = kept.map(|(_, e)| e.length_m()).sum();
+        let wanted =
+            exurb_geom::polyline::length(&line.iter().map(|p| p.to_m()).collect::<Vec<_>>());
+        assert!((length - wanted).abs() < 0.1, "{length} of {wanted} m");
+        let along = city.streets.nodes().filter(|(id, n)| {
+            let line: Vec<Vec2> = line.iter().map(|p| p.to_m()).collect();
+            city.streets.degree(*id) > 2
+                && exurb_geom::polyline::distance(&line, n.at.to_m()) < 0.01
+        });
+        assert!(along.count() > 1, "nothing joins a given street");
+    }
+}
+
+#[test]
+fn a_turned_example_turns_its_streets() {
+    let document = serde_json::json!({ "rotate": 30.0, "continuation": 1.0 });
+    let city = grow(&grid(30), square(Vec2::splat(1500.0), 900.0), document, 1).expect("grows");
+    assert_lawful(&city);
+    let (mut along, mut total) = (0.0, 0.0);
+    for (_, edge) in city.streets.edges() {
+        for w in edge.line_m().windows(2) {
+            let lean = (trig::angle(w[1] - w[0]).to_degrees() - 30.0).rem_euclid(90.0);
+            total += w[0].distance(w[1]);
+            along += if lean.min(90.0 - lean) < 2.0 { w[0].distance(w[1]) } else { 0.0 };
+        }
+    }
+    assert!(along / total > 0.95, "{along} of {total}");
+}
+
+#[test]
+fn a_warp_turns_streets_with_its_guideline() {
+    // The example's line runs east; the target's runs north-east at first, then south-east.
+    let place = |x: f64, y: f64| format!("{},{}", x / 111_319.49, y / 110_574.28);
+    let guide = vec![
+        format!("{}={}", place(500.0, 1000.0), place(500.0, 1500.0)),
+        format!("{}={}", place(1500.0, 2000.0), place(1500.0, 1500.0)),
+        format!("{}={}", place(2500.0, 1000.0), place(2500.0, 1500.0)),
+    ];
+    let document = serde_json::json!({ "guide": guide, "continuation": 0.5 });
+    let target = Polygon::rectangle(GridPoint::m(400.0, 900.0), GridPoint::m(2600.0, 2100.0));
+    let city = grow(&grid(30), target, document, 1).expect("grows");
+    assert_lawful(&city);
+    // Far from the bend streets run as the guideline does.
+    let (mut along, mut total) = (0.0, 0.0);
+    for (_, edge) in city.streets.edges() {
+        for w in edge.line_m().windows(2) {
+            if (w[0].x - 1500.0).abs() < 750.0 {
+                continue;
+            }
+            let lean = (trig::angle(w[1] - w[0]).to_degrees() - 45.0).rem_euclid(90.0);
+            total += w[0].distance(w[1]);
+            along += if lean.min(90.0 - lean) < 25.0 { w[0].distance(w[1]) } else { 0.0 };
+        }
+    }
+    assert!(along / total > 0.8, "{along} of {total}");
+    let lonely = serde_json::json!({ "guide": ["0,0=0,0"] });
+    assert!(grow(&grid(12), square(Vec2::splat(600.0), 600.0), lonely, 1).is_err());
+}
+
 #[test]
 fn examples_without_streets_or_junctions_are_refused() {
     let empty = city_of({

@@ -39,6 +39,18 @@ struct ScopeOptions {
     blocks: Option<Vec<u32>>,
 }
 
+/// What of a city that is there a method of streets changes.
+#[derive(Args, Default)]
+#[command(next_help_heading = "Target")]
+struct InsideOptions {
+    /// Grow new streets inside this GeoJSON or GeoPackage polygon of CITY; the rest stays as it is
+    #[arg(long, value_name = "AREA.geojson", requires = "city")]
+    scope: Option<PathBuf>,
+    /// A map whose streets lie there from the beginning and stay as they are
+    #[arg(long, value_name = "STREETS.geojson")]
+    fixed: Option<PathBuf>,
+}
+
 /// What a command word stands for: one operation with its parameters, or `auto`, several in order
 /// with none.
 struct Method<'a> {
@@ -88,11 +100,13 @@ impl Method<'_> {
         let sources: Vec<&str> = self.cards().map(|card| card.source).collect();
         let mut command =
             Command::new(self.name).after_help(format!("Source: {}", sources.join("; ")));
-        if self.needs_city() {
-            let help = "City to work on, any readable format";
-            let city = Arg::new("city").value_name("CITY").required(true).help(help);
-            command = command.arg(city.value_parser(clap::value_parser!(PathBuf)));
-        }
+        let help = if self.needs_city() {
+            "City to work on, any readable format"
+        } else {
+            "City to grow a part of anew (see --scope); without one a new city is made"
+        };
+        let city = Arg::new("city").value_name("CITY").required(self.needs_city()).help(help);
+        command = command.arg(city.value_parser(clap::value_parser!(PathBuf)));
         command = MadeOptions::augment_args(command);
         if let Some(operation) = self.single() {
             command = flags::add(command, &operation.schema(), "Parameters");
@@ -101,7 +115,7 @@ impl Method<'_> {
         command = if self.needs_city() {
             ScopeOptions::augment_args(command)
         } else {
-            TargetOptions::augment_args(command)
+            InsideOptions::augment_args(TargetOptions::augment_args(command))
         };
         // The shared options bring their own doc lines, which must not stand for the method's.
         RunOptions::augment_args(SeedOptions::augment_args(command)).about(self.about.clone())
@@ -136,9 +150,28 @@ impl Method<'_> {
                 format!("{} learns from an example; name one with --example FILE", self.name);
             return Err(Problem::usage(message));
         } else {
-            recipe.target = Some(given::<TargetOptions>(matches)?.target());
+            recipe.city = matches.get_one::<PathBuf>("city").map(Source::new);
+            match (&recipe.city, given(matches)?) {
+                (Some(_), InsideOptions { scope: Some(file), .. }) => scope = Within::File(file),
+                (Some(city), _) => {
+                    let message = format!(
+                        "{} {} would replace all streets of {}; name the part to change with --scope AREA.geojson",
+                        self.cards().next().map_or("streets", |card| card.stage),
+                        self.name,
+                        city.file.display()
+                    );
+                    return Err(Problem::usage(message));
+                }
+                (None, _) => recipe.target = Some(given::<TargetOptions>(matches)?.target()),
+            }
         }
         recipe.steps = self.steps(matches, &scope)?;
+        if !self.needs_city()
+            && let (Some(step), InsideOptions { fixed, .. }) =
+                (recipe.steps.first_mut(), given(matches)?)
+        {
+            step.fixed = fixed;
+        }
         let MadeOptions { output, to } = given(matches)?;
         recipe.exports = output
             .into_iter()
