@@ -70,7 +70,9 @@ fn ribbon(map: &Map, line: &[GridPoint], street: &Street) -> Option<Ribbon> {
     let points = map.view.line(line)?;
     let paint = map.sheet.street(street.class);
     let scale = map.hair_px() * HAIRS;
-    let width_px = map.view.px(map.sheet.width_m(street)).max(paint.least_px * scale);
+    // Thinner than a pixel is only paler.
+    let least_px = (paint.least_px * scale).max(paint.least_px.min(1.0));
+    let width_px = map.view.px(map.sheet.width_m(street)).max(least_px);
     let (fill, casing) = match map.key.street(street) {
         Some(color) => (color, color.shade()),
         None => (map.base(paint.fill), map.base(paint.casing)),
