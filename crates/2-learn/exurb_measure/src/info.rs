@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use exurb_city::laws::{self, Gate, LawReport};
 use exurb_city::{BlockClass, City, Role, street_graph};
-use exurb_geom::{Frame, GridPoint};
+use exurb_geom::{Frame, GridPoint, polyline};
 use serde::{Deserialize, Serialize};
 
 /// Problems listed at most.
@@ -43,7 +43,8 @@ pub struct Info {
     pub problems: Vec<Problem>,
 }
 
-/// Streets of the graph.
+/// Streets of the graph; beside them, in no other figure, the ways of role other that are drawn and
+/// exported only (service roads, where nobody asked for them).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[allow(missing_docs, reason = "the names are those of the contract")]
 pub struct Streets {
@@ -55,6 +56,8 @@ pub struct Streets {
     pub crossings_without_node: usize,
     pub components: usize,
     pub largest_component_share: Option<f64>,
+    pub other_ways: usize,
+    pub other_ways_km: f64,
 }
 
 /// Nodes of degree other than 2, cut ends among them.
@@ -205,6 +208,11 @@ fn streets(city: &City, report: &LawReport, dead_end_share: Option<f64>) -> Stre
         components: report.count("largest_component_share")
             + usize::from(largest_component_share.is_some()),
         largest_component_share,
+        other_ways: city.other_ways.len(),
+        other_ways_km: city
+            .other_ways
+            .iter()
+            .fold(0.0, |km, way| km + polyline::grid_length_m(&way.line) / 1000.0),
     }
 }
 

@@ -30,6 +30,10 @@ fn figures(info: &Info, out: &mut String) {
     };
     line(out, "  km by role", lengths(&streets.km_by_role));
     line(out, "  km by class", lengths(&streets.km_by_class));
+    if streets.other_ways > 0 {
+        let besides = format!("{} ways of {:.1} km", streets.other_ways, streets.other_ways_km);
+        line(out, "  besides", format!("{besides}, service roads and the like, not measured"));
+    }
     line(out, "  dead ends", percent(streets.dead_end_share));
     let largest = percent(streets.largest_component_share);
     line(out, "  components", format!("{}, the largest holds {largest}", streets.components));

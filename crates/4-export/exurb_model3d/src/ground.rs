@@ -8,7 +8,9 @@ use exurb_geom::{GridPoint, Polygon, SegmentIndex, overlay};
 use rayon::prelude::*;
 
 use crate::mesh::Facing;
-use crate::palette::{self, BANK, GROUND, KERB, Linear, PAVEMENT, WATER, linear, scaled, share};
+use crate::palette::{
+    self, BANK, GREEN_LOTS, GROUND, KERB, Linear, PAVEMENT, WATER, linear, scaled, share,
+};
 use crate::scene::{Layer, Material, Part, Site};
 
 /// Heights in metres. Carriageways lie at 0, kerbs are 12 cm high; open ground lies a little lower
@@ -17,6 +19,9 @@ pub const BLOCK_M: f64 = 0.12;
 pub const GROUND_M: f64 = -0.25;
 const LAND_USE_M: f64 = -0.12;
 const WATER_M: f64 = -0.8;
+
+/// Larger lots are not paved, in m².
+const LARGEST_YARD_M2: f64 = 4000.0;
 
 pub fn layers(site: &Site) -> Vec<Layer> {
     let city = site.city;
@@ -204,6 +209,10 @@ fn grounds(block: &Block, lots: &[&Parcel], inner: Vec<Polygon>) -> Vec<(Polygon
             let of_use = lot.land_use.as_deref().filter(|class| area::is_open(class));
             let base = match of_use {
                 Some(class) => linear(palette::ground_of(Some(class))),
+                // Nobody paves a field.
+                None if lot.polygon.area_m2() > LARGEST_YARD_M2 => {
+                    palette::pick(&palette::LOTS[..GREEN_LOTS], lot.id, 8)
+                }
                 None => palette::pick(&palette::LOTS, lot.id, 8),
             };
             scaled(base, tone(lot.id, 0.16))

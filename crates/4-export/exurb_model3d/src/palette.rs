@@ -78,8 +78,10 @@ pub fn ground_of(land_use: Option<&str>) -> u32 {
     }
 }
 
-/// Yards and gardens.
-pub const LOTS: [u32; 6] = [0x8fa36a, 0x99a878, 0x86995f, 0xa3a489, 0xa9a392, 0x95a06f];
+/// Gardens, then yards.
+pub const LOTS: [u32; 6] = [0x8fa36a, 0x99a878, 0x86995f, 0x95a06f, 0xa3a489, 0xa9a392];
+/// How many of [`LOTS`] are gardens.
+pub const GREEN_LOTS: usize = 4;
 
 /// Crowns.
 pub const LEAVES: [u32; 6] = [0x5f8a45, 0x6b9650, 0x567f42, 0x7a9c55, 0x4e7a48, 0x86a05a];

@@ -100,14 +100,23 @@ pub struct Scene {
     pub bounds: Bounds,
 }
 
-/// Ground around the target, in metres: streets run past it by about as much.
+/// Ground around all that stands in the city, in metres.
 const MARGIN_M: f64 = 30.0;
+
+/// The target and what runs past it: streets, the blocks between them, their buildings.
+fn extent(city: &City) -> Bounds {
+    let corners = city.streets.edges().flat_map(|(_, edge)| edge.line().iter().copied());
+    let blocks = city.blocks.iter().map(|block| block.polygon.bounds());
+    let buildings = city.buildings.iter().map(|building| building.polygon.bounds());
+    let all = Bounds::of(corners).into_iter().chain(blocks).chain(buildings);
+    all.fold(city.target.bounds(), Bounds::union)
+}
 
 impl Scene {
     /// The meshes of `city`. Works on rayon's current pool; the result does not depend on it.
     pub fn of(city: &City, options: &Options) -> Self {
-        let bounds = city.target.bounds().grown(MARGIN_M);
-        let center = bounds.center();
+        let bounds = extent(city).grown(MARGIN_M);
+        let center = city.target.bounds().center();
         let center = Vec2::new(center.x.round(), center.y.round());
         let site = Site { city, axes: Axes { center }, bounds, options };
         let (ground, (streets, (buildings, features))) = rayon::join(

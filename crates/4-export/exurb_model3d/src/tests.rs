@@ -223,6 +223,20 @@ fn a_glb_reads_back_with_its_layers_and_numbers() {
 }
 
 #[test]
+fn what_stands_past_the_target_is_shown_and_the_origin_stays() {
+    let inside = building(1, rectangle(0.0, 0.0, 10.0, 10.0), 9.0, Roof::Flat);
+    let outside = building(2, rectangle(900.0, 0.0, 10.0, 10.0), 9.0, Roof::Flat);
+    let city = city_of(vec![inside, outside]);
+    let scene = Scene::of(&city, &Options::default());
+    let buildings = scene.layers.iter().find(|layer| layer.name == "buildings").expect("a layer");
+    let ids: Vec<u32> =
+        buildings.parts.iter().flat_map(|p| p.elements.iter().map(|(id, _)| *id)).collect();
+    assert!(ids.contains(&1) && ids.contains(&2), "{ids:?}");
+    let middle = city.target.bounds().center();
+    assert!(scene.center.distance(middle) < 1.0, "the origin is the target's middle");
+}
+
+#[test]
 fn element_stretches_cover_all_triangles_in_order() {
     for layer in Scene::of(&town(), &Options::default()).layers {
         for part in layer.parts {

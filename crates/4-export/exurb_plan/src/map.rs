@@ -28,19 +28,15 @@ impl Map<'_> {
 
     /// A thin line, the same share of the picture at any size.
     pub fn hair_px(&self) -> f32 {
-        (self.view.width_px as f32 / 2400.0).clamp(0.5, 4.0)
+        self.view.hair_px()
     }
 }
 
 /// The whole map.
 pub fn draw(city: &City, options: &Options) -> Display {
-    let map = Map {
-        city,
-        options,
-        view: View::of(city, options),
-        sheet: Sheet::of(options.style),
-        key: Key::of(city, options.color_by),
-    };
+    let view = View::of(city, options);
+    let sheet = Sheet::of(options.style, streets::are_lines(city, &view));
+    let map = Map { city, options, view, sheet, key: Key::of(city, options.color_by) };
     let mut groups = Vec::new();
     let mut add = |layer: Layer, marks: &dyn Fn(&Map) -> Vec<Mark>| {
         let only_streets = map.sheet.is_figure() && layer != Layer::Streets;

@@ -9,6 +9,8 @@ use crate::color::{Color, rgb};
 #[derive(Clone, Copy, Debug)]
 pub struct Sheet {
     style: Style,
+    /// Are local streets too narrow for a ribbon between two lines?
+    as_lines: bool,
     pub paper: Color,
     pub block: Color,
     pub block_line: Color,
@@ -38,6 +40,7 @@ pub struct StreetPaint {
 
 const LIGHT: Sheet = Sheet {
     style: Style::Default,
+    as_lines: false,
     paper: rgb(0xece8de),
     block: rgb(0xf0ece3),
     block_line: rgb(0xdcd5c6),
@@ -58,6 +61,7 @@ const LIGHT: Sheet = Sheet {
 
 const DARK: Sheet = Sheet {
     style: Style::Dark,
+    as_lines: false,
     paper: rgb(0x14181d),
     block: rgb(0x1b2027),
     block_line: rgb(0x252c35),
@@ -77,9 +81,12 @@ const DARK: Sheet = Sheet {
 };
 
 impl Sheet {
-    pub fn of(style: Style) -> Self {
+    /// The sheet of a style. Light streets on light ground are lost where they are but a few pixels
+    /// wide: with `as_lines` the default style draws local streets as dark lines and main ones
+    /// darker.
+    pub fn of(style: Style, as_lines: bool) -> Self {
         match style {
-            Style::Default => LIGHT,
+            Style::Default => Self { as_lines, ..LIGHT },
             Style::Dark => DARK,
             Style::Figure => Self { style, paper: rgb(0xffffff), text: rgb(0x000000), ..LIGHT },
         }
@@ -106,6 +113,22 @@ impl Sheet {
             casing: rgb(casing),
             least_px,
         };
+        if self.as_lines {
+            return match class {
+                Class::Motorway => paint(0xe5823a, 0x8f4a14, 3.2),
+                Class::Trunk => paint(0xec9a43, 0x94591a, 3.0),
+                Class::MotorwayLink | Class::TrunkLink => paint(0xec9a43, 0x94591a, 1.6),
+                Class::Primary => paint(0xf2b54a, 0x94681c, 2.8),
+                Class::Secondary => paint(0xf7cf6d, 0x97772c, 2.4),
+                Class::Tertiary => paint(0xfbe49c, 0x8f7d45, 2.0),
+                Class::PrimaryLink | Class::SecondaryLink | Class::TertiaryLink => {
+                    paint(0xf7cf6d, 0x97772c, 1.4)
+                }
+                Class::Pedestrian | Class::LivingStreet => paint(0x9b8a80, 0xf6f3ec, 1.1),
+                Class::Service => paint(0xb3aa9c, 0xf6f3ec, 0.7),
+                _ => paint(0x7d7468, 0xf6f3ec, 1.2),
+            };
+        }
         match (self.style, class) {
             (Style::Figure, c) => paint(0, 0, if c.role() == Role::Main { 2.4 } else { 1.0 }),
             (Style::Default, Class::Motorway) => paint(0xf0a35e, 0xb96a2c, 3.6),

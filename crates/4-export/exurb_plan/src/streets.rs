@@ -4,11 +4,12 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use exurb_city::{Class, Street};
+use exurb_city::{City, Class, Street};
 use exurb_geom::GridPoint;
 
 use crate::display::{Cap, Mark, Paint, Pen, Px, Shape};
 use crate::map::Map;
+use crate::view::View;
 
 /// A street on the paper.
 struct Ribbon {
@@ -19,6 +20,22 @@ struct Ribbon {
     bridge: bool,
     name: Option<Arc<str>>,
 }
+
+/// Streets this narrow on a picture of 2,000 pixels are lines; without houses beside them, which
+/// make the blocks darker than the streets, wider ones, too.
+const LINE_PX: f32 = 4.0;
+const LINE_ALONE_PX: f32 = 9.0;
+/// Width of a usual local street in metres.
+const LOCAL_M: f64 = 6.0;
+
+/// Are local streets too narrow on the paper for a light ribbon to be seen?
+pub fn are_lines(city: &City, view: &View) -> bool {
+    let least = if city.buildings.is_empty() { LINE_ALONE_PX } else { LINE_PX };
+    view.px(LOCAL_M) < least * view.hair_px() * HAIRS
+}
+
+/// Hairs to a pixel of a picture of 2,000.
+const HAIRS: f32 = 2400.0 / 2000.0;
 
 pub fn draw(map: &Map) -> Vec<Mark> {
     let streets = map.city.streets.edges().map(|(_, e)| (e.line(), &e.data));
@@ -52,8 +69,10 @@ fn marks<'a>(map: &Map, streets: impl Iterator<Item = (&'a [GridPoint], &'a Stre
 fn ribbon(map: &Map, line: &[GridPoint], street: &Street) -> Option<Ribbon> {
     let points = map.view.line(line)?;
     let paint = map.sheet.street(street.class);
-    let scale = map.hair_px() / (2000.0 / 2400.0);
-    let width_px = map.view.px(map.sheet.width_m(street)).max(paint.least_px * scale);
+    let scale = map.hair_px() * HAIRS;
+    // Thinner than a pixel is only paler.
+    let least_px = (paint.least_px * scale).max(paint.least_px.min(1.0));
+    let width_px = map.view.px(map.sheet.width_m(street)).max(least_px);
     let (fill, casing) = match map.key.street(street) {
         Some(color) => (color, color.shade()),
         None => (map.base(paint.fill), map.base(paint.casing)),

@@ -109,6 +109,28 @@ fn the_figure_style_is_black_streets_on_white() {
     assert!((0.1..0.35).contains(&black), "{black}");
 }
 
+/// Streets every 500 m over 8 km, one of them a main street, and nothing else.
+#[test]
+fn streets_are_seen_at_every_scale() {
+    for side_m in [500.0, 2_000.0, 8_000.0] {
+        let mut city = City::empty(Frame::null_island(), rectangle(0.0, 0.0, side_m, side_m));
+        let middle = side_m / 2.0;
+        let lines = [(middle / 2.0, Class::Residential), (middle, Class::Primary)];
+        let lines = lines.map(|(x, class)| {
+            let line = vec![GridPoint::m(x, 0.0), GridPoint::m(x, side_m)];
+            (line, Street { class, ..Street::default() })
+        });
+        city.streets = Arc::new(street_graph::from_lines(lines));
+        let png = to_png(&city, &Options { width_px: 1000, ..Options::default() }).unwrap();
+        let grey = |x: u32| shade_at(&png, x, 600).map(i32::from).iter().sum::<i32>() / 3;
+        let ground = grey(100);
+        for x in [250, 500] {
+            let difference = (x - 14..x + 14).map(|x| (grey(x) - ground).abs()).max();
+            assert!(difference > Some(40), "{side_m} m at {x}: {difference:?}");
+        }
+    }
+}
+
 #[test]
 fn svg_is_well_formed_and_names_its_layers_and_its_source() {
     for color_by in [None].into_iter().chain(ColorBy::ALL.map(Some)) {

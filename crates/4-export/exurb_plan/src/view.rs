@@ -35,6 +35,11 @@ impl View {
         Self { bounds, width_px: options.width_px, height_px, px_per_m }
     }
 
+    /// A thin line, the same share of the picture at any size.
+    pub fn hair_px(&self) -> f32 {
+        (self.width_px as f32 / 2400.0).clamp(0.5, 4.0)
+    }
+
     /// Pixels of a length.
     pub fn px(&self, length_m: f64) -> f32 {
         (length_m * self.px_per_m) as f32

@@ -12,6 +12,7 @@
 mod camera;
 mod caption;
 mod light;
+mod meadow;
 mod raster;
 mod shade;
 mod surface;
@@ -38,9 +39,10 @@ pub struct View {
     /// Where the camera stands as seen from the middle: degrees clockwise from north; default 225,
     /// the south-west.
     pub azimuth_deg: f64,
-    /// How high the camera stands over the horizon, in degrees, 2 to 89; default 26.
+    /// How high the camera stands over the horizon, in degrees, 2 to 89; default 19, so low that
+    /// the horizon is seen.
     pub elevation_deg: f64,
-    /// Vertical angle of view in degrees, 5 to 100; default 38.
+    /// Vertical angle of view in degrees, 5 to 100; default 44.
     pub field_of_view_deg: f64,
     /// 1 fills the frame with the city, 2 with half of it.
     pub zoom: f64,
@@ -61,8 +63,8 @@ impl Default for View {
             width_px: 1600,
             height_px: 1000,
             azimuth_deg: 225.0,
-            elevation_deg: 26.0,
-            field_of_view_deg: 38.0,
+            elevation_deg: 19.0,
+            field_of_view_deg: 44.0,
             zoom: 1.0,
             sun_azimuth_deg: 165.0,
             sun_elevation_deg: 40.0,

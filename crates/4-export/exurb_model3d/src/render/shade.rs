@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use super::camera::Camera;
 use super::light::Light;
+use super::meadow;
 use super::raster::NOTHING;
 use super::surface::Surfaces;
 use super::texture::Texture;
@@ -15,6 +16,9 @@ const SKY: Vec3 = Vec3::new(0.62, 0.74, 0.95);
 const BOUNCE: Vec3 = Vec3::new(0.36, 0.34, 0.3);
 const ZENITH: Vec3 = Vec3::new(0.34, 0.62, 1.15);
 const HAZE: Vec3 = Vec3::new(1.2, 1.36, 1.54);
+
+/// What faces up below this height is ground, no roof, in metres.
+const GROUND_TOP_M: f32 = 0.3;
 
 /// All that decides on colours.
 pub struct Shader<'a> {
@@ -68,6 +72,9 @@ impl<'a> Shader<'a> {
             let patch_m = self.camera.sample_m(distance_m) * 1.6 / slant.sqrt();
             albedo *= texture.at(uv, per_m * patch_m);
         }
+        if normal.y > 0.9 && at.y < GROUND_TOP_M {
+            albedo = meadow::uneven(albedo, at, self.camera.sample_m(distance_m));
+        }
         let lit = if found.material() == Material::Water {
             self.water(albedo, at, ray)
         } else {
@@ -101,7 +108,11 @@ impl<'a> Shader<'a> {
             return sky(ray.normalize());
         }
         let distance = (self.camera.eye.y + 0.25) / -ray.y;
-        let lit = self.ground * (SUN * self.light.sun.y + SKY);
+        let at = self.camera.eye + ray * distance;
+        let outside = (self.surfaces.low - at).max(at - self.surfaces.high).max(Vec3::ZERO);
+        let ground = meadow::uneven(self.ground, at, self.camera.sample_m(distance));
+        let ground = meadow::wooded(ground, at, outside.x.max(outside.z));
+        let lit = ground * (SUN * self.light.sun.y + SKY);
         self.hazy(lit, distance * ray.length(), ray)
     }
 

@@ -31,9 +31,10 @@ struct Options {
     run: RunOptions,
 }
 
-/// The operations of the demo, in order.
+/// The operations of the demo, in order. Trees come last: parcels tell where the parks are, and
+/// footprints where no tree can stand.
 const STEPS: [&str; 5] =
-    ["streets grow", "streets furnish", "blocks parcels", "blocks footprints", "buildings extrude"];
+    ["streets grow", "blocks parcels", "blocks footprints", "buildings extrude", "streets furnish"];
 /// What it writes beside the recipe and the credits; the last is a perspective picture.
 const FILES: [&str; 8] = [
     "city.gpkg",
@@ -124,6 +125,7 @@ Next, with a map of your own (.osm.pbf, .osm, .geojson, ...):
   exurb streets grow --example YOUR_MAP -o city.gpkg
   exurb blocks auto city.gpkg --example YOUR_MAP -o city.gpkg
   exurb buildings auto city.gpkg --example YOUR_MAP -o city.gpkg
+  exurb streets furnish city.gpkg --example YOUR_MAP -o city.gpkg
   exurb render city.gpkg --view 3d -o view.png
 or all of it at once, as here:
   exurb demo --example YOUR_MAP --size 3000x2000 -o DIR

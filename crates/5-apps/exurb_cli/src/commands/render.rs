@@ -35,7 +35,7 @@ struct Options {
     /// Perspective: where the camera stands, in degrees clockwise from north [default: 225]
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
     azimuth: Option<f64>,
-    /// Perspective: how high it stands over the horizon, in degrees [default: 30]
+    /// Perspective: how high it stands over the horizon, in degrees [default: 19]
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
     elevation: Option<f64>,
     /// Perspective: 1 fills the picture with the city, 2 with half of it [default: 1]
