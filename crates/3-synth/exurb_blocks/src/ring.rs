@@ -64,6 +64,16 @@ impl Ring {
         self.points[i].lerp(self.points[i + 1], t)
     }
 
+    /// Does it go around `p`?
+    pub fn winds_around(&self, p: Vec2) -> bool {
+        self.points.windows(2).fold(false, |inside, w| {
+            let (a, b) = (w[0], w[1]);
+            let crossed =
+                (a.y > p.y) != (b.y > p.y) && ((b - a).perp_dot(p - a) > 0.0) == (b.y > a.y);
+            inside ^ crossed
+        })
+    }
+
     /// The sides between corners; one from 0 around when there is no corner.
     pub fn sides(&self) -> Vec<Side> {
         let corners = self.corners();

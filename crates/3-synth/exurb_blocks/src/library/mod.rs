@@ -18,7 +18,7 @@ mod open_land;
 pub use block_features::{Features, Surroundings};
 pub use building_sample::BuildingSample;
 pub use donor::Donors;
-pub use example_block::{ExampleBlock, median};
+pub use example_block::{ExampleBlock, OPEN_COVERAGE, OPEN_SHARE, median};
 pub use open_land::{OpenLand, OpenNearby};
 
 use exurb_city::{City, block};

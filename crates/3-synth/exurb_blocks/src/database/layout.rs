@@ -1,0 +1,188 @@
+use std::sync::Arc;
+
+use exurb_city::{Block, BlockClass, Building, City, Feature};
+use exurb_geom::{BoxGrid, GridPoint, Polygon};
+
+use super::tidy::tidied;
+use crate::kerb::Kerb;
+use crate::library::{Features, OpenLand};
+use crate::refine::Why;
+
+/// What stands in a block of an example.
+#[derive(Clone, Debug)]
+pub struct Layout {
+    /// Name of its example.
+    pub source: Arc<str>,
+    /// Number of its block in the example.
+    pub id: u32,
+    /// Weight of its example.
+    pub weight: f64,
+    /// The block.
+    pub kerb: Polygon,
+    /// What blocks are compared by before anything stands on them.
+    pub features: Features,
+    /// Class of open land, where that takes most of the block and next to nothing is built on it.
+    pub open: Option<Arc<str>>,
+    /// Prevailing land use.
+    pub land_use: Option<Arc<str>>,
+    /// Its buildings, in order of their numbers.
+    pub footprints: Vec<Footprint>,
+    /// Why buildings of the map are not among them, one each.
+    pub flaws: Vec<Why>,
+    /// Trees, lamps, playgrounds and the like.
+    pub things: Vec<Feature>,
+    /// Footprints by area of the block.
+    pub coverage: f64,
+    /// Mean height of the buildings by footprint, in metres, where known.
+    pub height_m: Option<f64>,
+}
+
+/// A building of a layout.
+#[derive(Clone, Debug)]
+pub struct Footprint {
+    /// The building as it stands in the example.
+    pub building: Building,
+    /// The parts that lie in it.
+    pub parts: Vec<Building>,
+    /// Distance to the kerb in metres; negative where it reaches over it.
+    pub clearance_m: f64,
+    /// Does it stand on water or open land in the example already?
+    pub on_open_land: bool,
+}
+
+/// Blocks under this area teach nothing, in m².
+const LEAST_BLOCK_M2: f64 = 100.0;
+/// A footprint that flaws of the map take more of than this share is left out.
+const FLAW_TOLERANCE: f64 = 0.3;
+
+/// The layouts of a city's blocks; islands and slivers are left out, and so are empty blocks where the
+/// map's buildings are not complete and nothing says that the land is open. Linear in elements.
+pub fn layouts_of(
+    city: &City,
+    blocks: &[Block],
+    features: &[Features],
+    weight: f64,
+) -> Vec<Layout> {
+    let open = OpenLand::of(city);
+    let mut homes = Homes::of(city, blocks);
+    let mut out = Vec::new();
+    for (i, block) in blocks.iter().enumerate() {
+        if block.class == BlockClass::Island || block.polygon.area_m2() < LEAST_BLOCK_M2 {
+            continue;
+        }
+        let (footprints, flaws) = footprints(city, block, &homes.buildings[i], &open);
+        let mut layout = Layout {
+            source: city.metadata.name.clone(),
+            id: block.id,
+            weight,
+            kerb: block.polygon.clone(),
+            features: features[i],
+            open: None,
+            land_use: block.land_use.clone(),
+            coverage: 0.0,
+            height_m: mean_height_m(&footprints),
+            footprints,
+            flaws,
+            things: std::mem::take(&mut homes.things[i]),
+        };
+        layout.coverage = layout.built_m2() / block.polygon.area_m2();
+        layout.open = open_class(&layout, &open);
+        let told = city.metadata.buildings_complete || layout.open.is_some();
+        if told || !layout.footprints.is_empty() {
+            out.push(layout);
+        }
+    }
+    out
+}
+
+impl Layout {
+    /// Area of all footprints in m².
+    pub fn built_m2(&self) -> f64 {
+        self.footprints.iter().map(|f| f.building.polygon.area_m2()).sum()
+    }
+}
+
+/// The class of open land that takes most of the block, where next to nothing is built on it.
+fn open_class(layout: &Layout, open: &OpenLand) -> Option<Arc<str>> {
+    use crate::library::{OPEN_COVERAGE, OPEN_SHARE};
+    let share = open.share(&layout.kerb)?;
+    (share.1 >= OPEN_SHARE && layout.coverage <= OPEN_COVERAGE).then_some(share.0)
+}
+
+fn mean_height_m(footprints: &[Footprint]) -> Option<f64> {
+    let known = footprints
+        .iter()
+        .filter_map(|f| Some((f.building.known_height_m()?, f.building.polygon.area_m2())));
+    let (sum, area) = known.fold((0.0, 0.0), |(s, a), (h, m2)| (s + h * m2, a + m2));
+    (area > 0.0).then(|| sum / area)
+}
+
+/// Indices of the buildings, and the features, of each block.
+struct Homes {
+    buildings: Vec<Vec<u32>>,
+    things: Vec<Vec<Feature>>,
+}
+
+impl Homes {
+    /// By the numbers of blocks that elements carry, else by a point inside.
+    fn of(city: &City, blocks: &[Block]) -> Self {
+        let numbers: std::collections::BTreeMap<u32, usize> =
+            blocks.iter().enumerate().map(|(i, b)| (b.id, i)).collect();
+        let told = !city.blocks.is_empty();
+        let boxes = BoxGrid::of(blocks.iter().map(|b| &b.polygon));
+        let mut near = Vec::new();
+        let mut home = |number: u32, at: &dyn Fn() -> GridPoint| {
+            if told {
+                return numbers.get(&number).copied();
+            }
+            let p = at();
+            boxes.meeting(p, p, &mut near);
+            near.iter().map(|n| *n as usize).find(|n| blocks[*n].polygon.contains(p))
+        };
+        let mut out = Self {
+            buildings: vec![Vec::new(); blocks.len()],
+            things: vec![Vec::new(); blocks.len()],
+        };
+        for (i, b) in city.buildings.iter().enumerate() {
+            if let Some(k) = home(b.block, &|| GridPoint::round(b.polygon.interior_point())) {
+                out.buildings[k].push(i as u32);
+            }
+        }
+        for thing in city.features.iter() {
+            if let Some(k) = home(thing.block, &|| GridPoint::round(super::middle(&thing.shape))) {
+                out.things[k].push(thing.clone());
+            }
+        }
+        out
+    }
+}
+
+fn footprints(
+    city: &City,
+    block: &Block,
+    list: &[u32],
+    open: &OpenLand,
+) -> (Vec<Footprint>, Vec<Why>) {
+    let (parts, whole): (Vec<&Building>, Vec<&Building>) =
+        list.iter().map(|i| &city.buildings[*i as usize]).partition(|b| b.is_part);
+    let open = open.near(&block.polygon);
+    let footprints = whole.into_iter().map(|building| Footprint {
+        clearance_m: 0.0,
+        on_open_land: open.forbids(&building.polygon),
+        building: building.clone(),
+        parts: Vec::new(),
+    });
+    let (mut out, flaws) = tidied(&block.polygon, footprints.collect(), FLAW_TOLERANCE);
+    let kerb = Kerb::of(&block.polygon);
+    for footprint in &mut out {
+        footprint.clearance_m = kerb.clearance_m(&footprint.building.polygon, &block.polygon);
+    }
+    for part in parts {
+        let p = GridPoint::round(part.polygon.interior_point());
+        // A part without its building stays at home.
+        if let Some(whole) = out.iter_mut().find(|f| f.building.polygon.contains(p)) {
+            whole.parts.push(part.clone());
+        }
+    }
+    (out, flaws)
+}
