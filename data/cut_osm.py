@@ -4,9 +4,10 @@ Authors, time stamps and versions go, and so do tags no part of the program look
 where the upstream extract lacks their nodes; areas that do not close any more and relations that
 lack members go. The header keeps the upstream box.
 
-    python data/cut_osm.py IN.osm.pbf OUT.osm.pbf
+    python data/cut_osm.py IN.osm.pbf OUT.osm.pbf [W,S,E,N]
 
-Needs the package `osmium` (data/requirements.txt).
+With a box, ways with a node inside stay, whole, and so do relations of these, unless they have over a
+hundred members, such as whole islands. Needs the package `osmium` (data/requirements.txt).
 """
 
 import sys
@@ -67,6 +68,25 @@ def read(path):
     return nodes, ways, relations
 
 
+def inside(box, nodes, ways, relations):
+    """The ways with a node in the box, the relations with such a way, and the ways of these."""
+    low, high = box.bottom_left, box.top_right
+    near = {
+        n
+        for n, (lon, lat, _) in nodes.items()
+        if low.lon <= lon <= high.lon and low.lat <= lat <= high.lat
+    }
+    ways = {way: (way, refs, tags) for way, refs, tags in ways}
+    touching = {way for way, (_, refs, _) in ways.items() if not near.isdisjoint(refs)}
+    relations = [
+        r for r in relations if len(r[1]) <= 100 and any(ref in touching for _, ref, _ in r[1])
+    ]
+    members = {ref for _, refs, _ in relations for kind, ref, _ in refs if kind == "w"}
+    kept = [way for i, way in ways.items() if i in touching or i in members]
+    used = near.union(*(refs for _, refs, _ in kept))
+    return {n: node for n, node in nodes.items() if n in used}, kept, relations
+
+
 def cut(nodes, ways, relations):
     whole = {w for w, refs, _ in ways if all(r in nodes for r in refs)}
     relations = [
@@ -108,10 +128,15 @@ def write(path, box, nodes, ways, relations):
             out.add_relation(mutable.Relation(id=i, members=members, tags=tags))
 
 
-def main(source, target):
-    box = osmium.io.Reader(source).header().box()
-    write(target, box, *cut(*read(source)))
+def main(source, target, corners=None):
+    extract = read(source)
+    if corners is None:
+        box = osmium.io.Reader(source).header().box()
+    else:
+        box = osmium.osm.Box(*map(float, corners.split(",")))
+        extract = inside(box, *extract)
+    write(target, box, *cut(*extract))
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:3])
+    main(*sys.argv[1:4])

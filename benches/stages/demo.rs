@@ -10,7 +10,7 @@ const LIMIT_S: f64 = 5.0;
 fn main() {
     heading("exurb demo: a whole city of 2 km x 2 km in every format");
     let exurb = std::env::var("EXURB_BIN").expect("`cargo xtask bench` names the program");
-    for style in ["helsinki", "karhula", "prague", "grid", "suburb"] {
+    for style in ["helsinki", "karhula", "prague", "suburb", "saltlake", "grid"] {
         let folder = bench_folder().join("demo").join(style);
         let words = ["demo", "--quiet", "--style", style, "-o"];
         let mut command = vec![exurb.as_ref()];

@@ -30,20 +30,30 @@ impl PointIndex {
         }
     }
 
-    /// The points within `radius_m` of `p`: number and distance, nearest first, ties by number.
-    pub fn within(&self, p: Vec2, radius_m: f64) -> Vec<(u32, f64)> {
+    /// Calls `visit` with the numbers of the points within `radius_m` of `p`, in order of cells and
+    /// insertion.
+    pub fn visit(&self, p: Vec2, radius_m: f64, mut visit: impl FnMut(u32)) {
+        self.visit_with_distance(p, radius_m, |id, _| visit(id));
+    }
+
+    fn visit_with_distance(&self, p: Vec2, radius_m: f64, mut visit: impl FnMut(u32, f64)) {
         let (lo, hi) = (self.cell(p - radius_m), self.cell(p + radius_m));
-        let mut out = Vec::new();
         for y in lo.1..=hi.1 {
             for x in lo.0..=hi.0 {
                 for (id, q) in self.cells.get(&(x, y)).into_iter().flatten() {
                     let d = q.distance(p);
                     if d <= radius_m {
-                        out.push((*id, d));
+                        visit(*id, d);
                     }
                 }
             }
         }
+    }
+
+    /// The points within `radius_m` of `p`: number and distance, nearest first, ties by number.
+    pub fn within(&self, p: Vec2, radius_m: f64) -> Vec<(u32, f64)> {
+        let mut out = Vec::new();
+        self.visit_with_distance(p, radius_m, |id, d| out.push((id, d)));
         out.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
         out
     }

@@ -7,44 +7,81 @@ use crate::{EdgeId, Graph, NodeId};
 /// Pieces shorter than this are rounding: they stay with what they hang on. Metres.
 const LEAST_PIECE_M: f64 = 0.002;
 
+/// What [`Graph::cut_along`] found.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Cut {
+    /// Nodes made on the border, in order.
+    pub nodes: Vec<NodeId>,
+    /// Edges outside the area.
+    pub outside: Vec<EdgeId>,
+}
+
 impl<N: Clone + Default, E: Clone> Graph<N, E> {
     /// Removes what lies outside `area` and cuts edges at its boundary. Returns the nodes made by
     /// cutting, in order. Edges that only touch the boundary stay as they are; an edge that ends
     /// within 2 mm of it is not cut there.
     pub fn clip(&mut self, area: &Polygon) -> Vec<NodeId> {
+        self.clip_some(area, |_| true)
+    }
+
+    /// As [`Graph::clip`], but leaves edges whole that `may_cut` refuses, wherever they lie.
+    pub fn clip_some(&mut self, area: &Polygon, may_cut: impl Fn(EdgeId) -> bool) -> Vec<NodeId> {
+        let mut cut = self.cut_along(area, may_cut);
+        for id in cut.outside {
+            self.remove_edge(id);
+        }
+        self.remove_isolated_nodes();
+        cut.nodes.retain(|n| self.get_node(*n).is_some());
+        cut.nodes
+    }
+
+    /// Cuts the edges that `may_cut` accepts at the boundary of `area` and says which of them, or
+    /// pieces of them, lie outside. Nothing is removed.
+    pub fn cut_along(&mut self, area: &Polygon, may_cut: impl Fn(EdgeId) -> bool) -> Cut {
         let border = SegmentGrid::new(area.segments().collect());
         let mut near = Vec::new();
-        let mut cut = Vec::new();
-        let ids: Vec<EdgeId> = self.edges().map(|(id, _)| id).collect();
+        let mut cut = Cut::default();
+        let ids: Vec<EdgeId> = self.edges().map(|(id, _)| id).filter(|id| may_cut(*id)).collect();
         for id in ids {
             let line = self.edge(id).line_m();
             let inside = stretches_inside(self.edge(id).line(), &line, area, &border, &mut near);
             let total = polyline::length(&line);
-            if inside == [(0.0, total)] {
-                continue;
-            }
-            let Some(edge) = self.remove_edge(id) else { continue };
-            for (start, end) in inside {
-                let points = polyline::round(&polyline::part(&line, start, end));
-                if points.len() < 2 {
-                    continue;
-                }
-                let mut node_at = |is_own: bool, own: NodeId, at: GridPoint| {
-                    if is_own {
-                        return own;
-                    }
-                    let node = self.add_node(at, N::default());
-                    cut.push(node);
-                    node
-                };
-                let from = node_at(start == 0.0, edge.from, points[0]);
-                let to = node_at(end == total, edge.to, points[points.len() - 1]);
-                self.add_edge(from, to, points, edge.data.clone());
+            if inside.is_empty() {
+                cut.outside.push(id);
+            } else if inside != [(0.0, total)] {
+                self.cut_edge(id, &line, &inside, &mut cut);
             }
         }
-        self.remove_isolated_nodes();
-        cut.retain(|n| self.get_node(*n).is_some());
         cut
+    }
+
+    /// Cuts an edge into its stretches inside and what lies between these.
+    fn cut_edge(&mut self, id: EdgeId, line: &[Vec2], inside: &[(f64, f64)], cut: &mut Cut) {
+        let Some(edge) = self.remove_edge(id) else { return };
+        let total = polyline::length(line);
+        let mut breaks: Vec<f64> = inside.iter().flat_map(|(a, b)| [*a, *b]).collect();
+        breaks.extend([0.0, total]);
+        breaks.sort_by(f64::total_cmp);
+        breaks.dedup();
+        let mut from = edge.from;
+        for w in breaks.windows(2) {
+            let points = polyline::round(&polyline::part(line, w[0], w[1]));
+            if points.len() < 2 {
+                continue;
+            }
+            let to = if w[1] == total {
+                edge.to
+            } else {
+                let node = self.add_node(points[points.len() - 1], N::default());
+                cut.nodes.push(node);
+                node
+            };
+            let piece = self.add_edge(from, to, points, edge.data.clone());
+            if !inside.contains(&(w[0], w[1])) {
+                cut.outside.extend(piece);
+            }
+            from = to;
+        }
     }
 }
 

@@ -19,6 +19,7 @@ mod ids;
 pub mod laws;
 pub mod noding;
 
+pub use clip::Cut;
 pub use faces::{Face, FaceId, Faces};
 pub use graph::{Edge, Graph, Node};
 pub use ids::{Dart, EdgeId, NodeId};

@@ -11,7 +11,7 @@ use crate::Error;
 /// What stands before the name of a built-in example where a file is expected.
 pub const PREFIX: &str = "builtin:";
 /// The names of the built-in examples, the demo's own first.
-pub const NAMES: [&str; 5] = ["helsinki", "karhula", "prague", "grid", "suburb"];
+pub const NAMES: [&str; 6] = ["helsinki", "karhula", "prague", "suburb", "saltlake", "grid"];
 
 const OSM: &str = "© OpenStreetMap contributors, ODbL 1.0";
 const FICTIONAL: &str = "Fictional map of the exurb project, CC0 1.0";
@@ -35,12 +35,13 @@ macro_rules! builtin {
 }
 
 /// In the order of [`NAMES`].
-const EXAMPLES: [Builtin; 5] = [
+const EXAMPLES: [Builtin; 6] = [
     builtin!("helsinki.osm.pbf", &[OSM]),
     builtin!("karhula.osm.pbf", &[OSM]),
     builtin!("prague.geojson", &[OSM, PRAGUE_PARCELS]),
+    builtin!("suburb.osm.pbf", &[OSM]),
+    builtin!("saltlake.osm.pbf", &[OSM]),
     builtin!("grid.osm.pbf", &[FICTIONAL]),
-    builtin!("suburb.osm.pbf", &[FICTIONAL]),
 ];
 
 /// The name in `builtin:NAME`; `None` for ordinary files.

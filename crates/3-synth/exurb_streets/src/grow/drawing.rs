@@ -7,7 +7,7 @@ use rand::RngExt;
 use super::growth::Growth;
 use super::layer::{ChainEnd, NodeKind};
 use super::learn::{self, SAMPLES};
-use super::{placing, procedural};
+use super::{fit, placing, procedural};
 
 /// Connectors compared at least; more, if they lie as near.
 const COMPARED: usize = 48;
@@ -17,13 +17,20 @@ const TRIES: usize = 6;
 /// one metre, lets a difference of ten metres decide everything; a whole length lets a street turn
 /// off at any angle.
 const UNIT: f64 = 0.12;
+/// Patches whose surroundings are looked at.
+const LOOKED_AT: usize = 24;
+/// The unit of what is amiss around a patch, as a share of the streets there.
+const FIT_UNIT: f64 = 0.05;
 
 /// Draws patches for `node` by eq. (2) until one lies, at most [`TRIES`].
 ///
 /// The paper sets the probability of illegal patches to 0 before the draw; drawing without
 /// replacement until a legal one comes is the same distribution and looks at fewer.
 pub fn draw(growth: &mut Growth, node: NodeId) -> bool {
-    let start = growth.net.graph.node(node).data.start;
+    let (at, start) = {
+        let n = growth.net.graph.node(node);
+        (n.at.to_m(), n.data.start)
+    };
     let style = growth.style(start);
     let arriving = growth.net.arriving(node);
     let unit_m = UNIT * placing::street_m(growth, start);
@@ -46,16 +53,23 @@ pub fn draw(growth: &mut Growth, node: NodeId) -> bool {
         }
         new
     });
-    best.truncate(COMPARED);
+    best.truncate(LOOKED_AT);
     let Some(least) = best.first().map(|b| b.0) else { return false };
     let mut weighted: Vec<(f64, usize, ChainEnd)> = best
         .into_iter()
-        .map(|(d, patch, end)| (trig::exp(-(d - least) / unit_m), patch, end))
+        .map(|(d, patch, end)| {
+            let root = style.layer.nodes[style.layer.tail(end)].at;
+            let amiss = 1.0 - fit::of(growth, start, root, at).quality();
+            (trig::exp(-(d - least) / unit_m - amiss / FIT_UNIT), patch, end)
+        })
         .collect();
     for _ in 0..TRIES.min(weighted.len()) {
         let (_, patch, end) = weighted.remove(pick(&weighted, growth));
         let root = style.layer.tail(end);
-        if placing::place(growth, node, patch, root) {
+        let piece = Some(growth.begin_piece(at));
+        if placing::place(growth, node, patch, root, piece) {
+            let vertex = &mut growth.net.graph.node_mut(node).data;
+            (vertex.link, vertex.piece) = (Some(style.layer.nodes[root].example), piece);
             return true;
         }
     }
@@ -80,6 +94,8 @@ pub fn away(growth: &mut Growth, node: NodeId, direction: Vec2) {
             }
         }
     }
+    let piece = growth.begin_piece(growth.net.graph.node(node).at.to_m());
+    growth.net.graph.node_mut(node).data.piece = Some(piece);
     for _ in 0..3.min(branches.len()) {
         let (_, _, end) = branches.remove(pick(&branches, growth));
         let before = growth.net.graph.degree(node);

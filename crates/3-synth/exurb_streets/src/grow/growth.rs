@@ -17,9 +17,12 @@ use rand::RngExt;
 use super::error::Error;
 use super::layer::{ChainEnd, NodeKind};
 use super::learn::{Style, Vocabulary};
-use super::network::{Landing, Network, Piece, Vertex, Wish};
+use super::network::{Coherent, Landing, Network, Piece, Vertex, Wish};
 use super::params::Params;
 use super::{drawing, placing, procedural};
+
+/// How far a copied piece reaches with a `continuation` of one half, in metres.
+const REACH_M: f64 = 250.0;
 
 /// Growth of one layer.
 pub struct Growth<'a> {
@@ -35,8 +38,10 @@ pub struct Growth<'a> {
     pub params: &'a Params,
     /// The stream of this area.
     pub rng: Rng,
-    /// Places to grow on.
+    /// Places to grow on: those of the piece that is being copied.
     pub queue: VecDeque<Place>,
+    /// Places where that piece ended and another may begin.
+    pub frontier: VecDeque<NodeId>,
     batch: u32,
 }
 
@@ -70,7 +75,17 @@ impl<'a> Growth<'a> {
         params: &'a Params,
         rng: Rng,
     ) -> Self {
-        Self { net, examples, is_main, area, params, rng, queue: VecDeque::new(), batch: 1 }
+        Self {
+            net,
+            examples,
+            is_main,
+            area,
+            params,
+            rng,
+            queue: VecDeque::new(),
+            frontier: VecDeque::new(),
+            batch: 1,
+        }
     }
 
     /// The layer's style for what grew from `start`.
@@ -90,38 +105,49 @@ impl<'a> Growth<'a> {
         self.batch
     }
 
-    /// Grows until the queue is empty.
+    /// Grows until nothing is queued: a piece is copied to its end before the next begins.
     pub fn run(&mut self, run: &Run) -> Result<(), Error> {
         let mut turns = 0_u32;
-        while let Some(place) = self.queue.pop_front() {
+        loop {
             turns += 1;
             if turns.is_multiple_of(64) && run.is_cancelled() {
                 return Err(Error::Cancelled);
             }
-            match place {
-                Place::Node(node) => self.turn(node),
-                Place::Branch(node, end) => placing::branch(self, node, end),
-                Place::Away(node, direction) => drawing::away(self, node, direction),
+            match self.queue.pop_front() {
+                Some(Place::Node(node)) => self.turn(node),
+                Some(Place::Branch(node, end)) => placing::branch(self, node, end),
+                Some(Place::Away(node, direction)) => drawing::away(self, node, direction),
+                None => match self.frontier.pop_front() {
+                    Some(node) => self.break_off(node),
+                    None => return Ok(()),
+                },
             }
         }
-        Ok(())
     }
 
-    /// One turn of algorithm 1.
+    /// One turn of algorithm 1 inside a piece: follows the example, or leaves the place for later.
     fn turn(&mut self, node: NodeId) {
         let Some(n) = self.net.graph.get_node(node) else { return };
         let (at, vertex) = (n.at, n.data.clone());
         if vertex.outside || vertex.dead_end || !self.area.contains(at) {
             return;
         }
-        let degree = self.net.graph.degree(node);
-        let procedural = self.rng.random_bool(self.params.procedural);
-        if !procedural && vertex.link.is_some() && self.rng.random_bool(self.params.continuation) {
+        let follows = vertex.piece.is_some_and(|piece| piece.holds(at.to_m()));
+        if follows && !self.rng.random_bool(self.params.procedural) {
             let link = vertex.link.and_then(|l| self.linked_node(l, vertex.start));
             if link.is_some_and(|own| placing::continuation(self, node, own)) {
                 return;
             }
         }
+        self.frontier.push_back(node);
+    }
+
+    /// One turn of algorithm 1 where a piece ended.
+    fn break_off(&mut self, node: NodeId) {
+        let Some(n) = self.net.graph.get_node(node) else { return };
+        let vertex = n.data.clone();
+        let degree = self.net.graph.degree(node);
+        let procedural = self.rng.random_bool(self.params.procedural);
         if degree > 2 || degree == 0 && vertex.link.is_none() {
             return;
         }
@@ -132,6 +158,15 @@ impl<'a> Growth<'a> {
             return;
         }
         procedural::expand(self, node);
+    }
+
+    /// A piece that begins at `origin`. How far it reaches is drawn around
+    /// [`REACH_M`] · c / (1 - c), where c is the parameter `continuation`.
+    pub fn begin_piece(&mut self, origin: Vec2) -> Coherent {
+        let c = self.params.continuation;
+        let spread = self.rng.random_range(0.7..1.3);
+        let reach_m = if c < 1.0 { REACH_M * c / (1.0 - c) * spread } else { f64::INFINITY };
+        Coherent { origin, reach_m }
     }
 
     /// The layer's node that is a copy's original.
@@ -148,7 +183,7 @@ impl<'a> Growth<'a> {
     }
 
     /// The vertex of a copy of the layer's node `own`.
-    pub fn copy_of(&self, own: usize, start: usize) -> Vertex {
+    pub fn copy_of(&self, own: usize, start: usize, piece: Option<Coherent>) -> Vertex {
         let node = &self.style(start).layer.nodes[own];
         Vertex {
             // Beyond the example's edge there is nothing to follow.
@@ -156,6 +191,7 @@ impl<'a> Growth<'a> {
             dead_end: node.kind == NodeKind::DeadEnd,
             outside: false,
             start,
+            piece,
         }
     }
 
@@ -207,7 +243,7 @@ impl<'a> Growth<'a> {
             .filter(|(i, _)| whole || polyline::length(&line[..=*i]) < landed - 12.0)
             .filter_map(|(i, n)| Some((*probe.line.get(*i)?, *n)))
             .collect();
-        let start = vertex.start;
+        let (start, coherent) = (vertex.start, vertex.piece);
         let (to, mut edge) = self.net.commit(node, probe, piece, vertex)?;
         if !self.area.contains(self.net.graph.node(to).at) {
             self.net.graph.node_mut(to).data.outside = true;
@@ -216,7 +252,7 @@ impl<'a> Growth<'a> {
             let at = GridPoint::round(at);
             if let Some(middle) = self.net.split(edge, at) {
                 let data = &mut self.net.graph.node_mut(middle).data;
-                (data.link, data.start) = (Some(link), start);
+                (data.link, data.start, data.piece) = (Some(link), start, coherent);
                 // The rest of the line is the newest edge.
                 edge = exurb_graph::EdgeId(self.net.graph.edge_bound() as u32 - 1);
             }

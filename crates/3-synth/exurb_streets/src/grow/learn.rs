@@ -4,12 +4,13 @@ use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
 use exurb_city::street_graph::StreetGraph;
-use exurb_city::{City, Role};
+use exurb_city::{City, Role, block};
 use exurb_geom::{GridPoint, LonLat, Polygon, SegmentIndex, Vec2, polyline};
-use exurb_graph::{EdgeId, NodeId};
+use exurb_graph::{EdgeId, Faces, NodeId};
 use exurb_measure::statistics::{StreetStatistics, street_statistics};
 
 use super::error::Error;
+use super::fit::Samples;
 use super::layer::{ChainEnd, Layer};
 use super::params::{self, Params};
 use super::patch::{self, Patch};
@@ -24,8 +25,12 @@ pub struct Vocabulary {
     pub main: Style,
     /// Local streets.
     pub local: Style,
+    /// Points along all its streets.
+    pub samples: Samples,
     /// Where growth begins in the example unless told otherwise.
     pub center: Vec2,
+    /// Side of a square as large as a large block (the upper quartile), metres.
+    pub large_block_m: f64,
     /// Values of the example's likeness gates.
     pub gates: BTreeMap<String, f64>,
 }
@@ -165,7 +170,18 @@ pub fn learn(city: &City, params: &Params) -> Result<Vocabulary, Error> {
         return Err(Error::NoPatch(name.to_string()));
     }
     let gates = exurb_city::laws::gates(city);
-    Ok(Vocabulary { center: center_of(&graph), name, main, local, gates })
+    let (center, large_block_m) = (center_of(&graph), large_block_m(&graph));
+    let samples = Samples::of(graph.edges().map(|(id, e)| (e.line_m(), is_main[id.index()])));
+    Ok(Vocabulary { name, main, local, samples, center, large_block_m, gates })
+}
+
+/// Side of a square as large as the upper quartile of the blocks that are no islands.
+fn large_block_m(graph: &StreetGraph) -> f64 {
+    let faces = Faces::of(graph, |_| true).list;
+    let blocks = faces.iter().filter(|f| f.polygon.mean_width_m() >= block::ISLAND_WIDTH_M);
+    let mut areas: Vec<f64> = blocks.map(|f| f.polygon.area_m2()).collect();
+    areas.sort_by(f64::total_cmp);
+    areas.get(areas.len() * 3 / 4).map_or(0.0, |area| area.sqrt())
 }
 
 fn street_index(graph: &StreetGraph, keep: impl Fn(EdgeId) -> bool) -> SegmentIndex {

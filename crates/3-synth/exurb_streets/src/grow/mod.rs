@@ -22,9 +22,11 @@
 mod cells;
 mod detect;
 mod drawing;
+mod edge;
 mod error;
 mod fill;
 mod finish;
+mod fit;
 mod growth;
 mod layer;
 mod learn;

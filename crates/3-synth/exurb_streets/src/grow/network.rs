@@ -32,6 +32,24 @@ pub struct Vertex {
     pub outside: bool,
     /// The start it grew from: tells the example.
     pub start: usize,
+    /// The copied piece it belongs to.
+    pub piece: Option<Coherent>,
+}
+
+/// A piece of the example that is copied without a break.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coherent {
+    /// Where it began.
+    pub origin: Vec2,
+    /// How far from there growth follows the example.
+    pub reach_m: f64,
+}
+
+impl Coherent {
+    /// Does growth at `p` still follow the example?
+    pub fn holds(self, p: Vec2) -> bool {
+        p.distance(self.origin) < self.reach_m
+    }
 }
 
 /// A piece of street in the new network.
@@ -177,6 +195,20 @@ impl Network {
             true
         });
         best.map(|(_, id, q)| (EdgeId(id), q))
+    }
+
+    /// Distance and direction of the nearest street within `radius_m` of `p`.
+    pub fn street_near(&self, p: Vec2, radius_m: f64) -> Option<(f64, Vec2)> {
+        let mut best: Option<(f64, Vec2)> = None;
+        self.segments.visit(Bounds { min: p - radius_m, max: p + radius_m }, |e| {
+            let d = polyline::nearest_on_segment(e.a, e.b, p).0.distance(p);
+            let nearer = best.is_none_or(|(least, _)| d < least);
+            if d <= radius_m && nearer && !self.graph.edge(EdgeId(e.id)).data.rim {
+                best = Some((d, (e.b - e.a).normalize_or_zero()));
+            }
+            true
+        });
+        best
     }
 
     /// Finds out how `line`, which begins at node `from`, may be laid. `None` when it may not.

@@ -7,7 +7,8 @@ use exurb_graph::NodeId;
 
 use super::growth::Growth;
 use super::layer::ChainEnd;
-use super::network::{JOIN_M, Wish};
+use super::network::{Coherent, JOIN_M, Vertex, Wish};
+use super::patch::Patch;
 
 /// Copies that come to lie this near to an existing node are that node.
 const SAME_M: f64 = 1.0;
@@ -19,26 +20,27 @@ const PATCH_ANGLE_RAD: f64 = 0.45;
 /// Follows the example: places the patch that owns the original of `node` (the layer's node `own`)
 /// with its copy on `node`. False when there is none or it may not lie there.
 pub fn continuation(growth: &mut Growth, node: NodeId, own: usize) -> bool {
-    let start = growth.net.graph.node(node).data.start;
+    let vertex = &growth.net.graph.node(node).data;
+    let (start, piece) = (vertex.start, vertex.piece);
     let style = growth.style(start);
     match style.layer.nodes[own].patch {
-        Some(patch) => place(growth, node, patch, own),
+        Some(patch) => place(growth, node, patch, own, piece),
         None => false,
     }
 }
 
-/// Lays the example's local street `end` from a node of a main street, and lets growth go on at its
-/// other end.
+/// Lays the example's local street `end` from a node of a main street, in the piece that this belongs
+/// to, and lets growth go on at its other end.
 pub fn branch(growth: &mut Growth, node: NodeId, end: ChainEnd) {
     let Some(n) = growth.net.graph.get_node(node) else { return };
-    let start = n.data.start;
+    let (start, coherent) = (n.data.start, n.data.piece);
     let at = n.at.to_m();
     let style = growth.style(start);
     let line = style.layer.line(end);
     let shift = at - line[0];
     let line: Vec<Vec2> = line.into_iter().map(|p| p + shift).collect();
     let far = style.layer.head(end);
-    let vertex = growth.copy_of(far, start);
+    let vertex = growth.copy_of(far, start, coherent);
     let part = match style.layer.nodes[far].patch {
         Some(patch) => style.patches[patch].label.clone(),
         None => "between main streets".into(),
@@ -54,9 +56,15 @@ pub fn branch(growth: &mut Growth, node: NodeId, end: ChainEnd) {
     }
 }
 
-/// Places `patch` with its core node `root` on `node`. Inner chains lie as in the example or the
+/// Places `patch` with its core node `root` on `node` as part of `coherent`. Inner chains lie as in the example or the
 /// patch is refused; connectors are cut where they meet a street. Returns whether anything was laid.
-pub fn place(growth: &mut Growth, node: NodeId, patch: usize, root: usize) -> bool {
+pub fn place(
+    growth: &mut Growth,
+    node: NodeId,
+    patch: usize,
+    root: usize,
+    coherent: Option<Coherent>,
+) -> bool {
     let (at, start) = {
         let n = growth.net.graph.node(node);
         (n.at.to_m(), n.data.start)
@@ -88,7 +96,8 @@ pub fn place(growth: &mut Growth, node: NodeId, patch: usize, root: usize) -> bo
         return false;
     }
     let batch = growth.next_batch();
-    let Some(made) = lay_inner(growth, start, patch, shift, &mut nodes, batch) else {
+    let copy = Copy { patch, shift, batch, start, coherent };
+    let Some(made) = lay_inner(growth, &copy, &mut nodes) else {
         return false;
     };
     let mut laid = made;
@@ -100,7 +109,7 @@ pub fn place(growth: &mut Growth, node: NodeId, patch: usize, root: usize) -> bo
             continue;
         }
         let far = layer.head(end);
-        let vertex = growth.copy_of(far, start);
+        let vertex = growth.copy_of(far, start, coherent);
         let piece = growth.copied(&layer.chains[end.chain].street, start, &patch.label, batch);
         let via = layer.via(end);
         let dead_end = vertex.dead_end;
@@ -122,16 +131,23 @@ pub fn place(growth: &mut Growth, node: NodeId, patch: usize, root: usize) -> bo
     laid
 }
 
+/// A patch as it is to lie.
+struct Copy<'a> {
+    patch: &'a Patch,
+    shift: Vec2,
+    batch: u32,
+    start: usize,
+    coherent: Option<Coherent>,
+}
+
 /// Lays the inner chains, or nothing. `None` when one of them may not lie there; else whether
 /// anything was laid.
 fn lay_inner(
     growth: &mut Growth,
-    start: usize,
-    patch: &super::patch::Patch,
-    shift: Vec2,
+    copy: &Copy,
     nodes: &mut BTreeMap<usize, Option<NodeId>>,
-    batch: u32,
 ) -> Option<bool> {
+    let &Copy { patch, shift, batch, start, coherent } = copy;
     let style = growth.style(start);
     let layer = &style.layer;
     let mut undo: Vec<exurb_graph::EdgeId> = Vec::new();
@@ -162,13 +178,14 @@ fn lay_inner(
         let piece = growth.copied(&layer.chains[chain].street, start, &patch.label, batch);
         // Inner chains arrive exactly: their far node is made first.
         let arrives = to.unwrap_or_else(|| {
-            let vertex = growth.copy_of(head, start);
+            let vertex = growth.copy_of(head, start, coherent);
             growth.net.add_node(GridPoint::round(line[line.len() - 1]), vertex)
         });
         let wish = Wish { to: Some(arrives), least_angle_rad: 0.2, ..Wish::free(batch) };
         let edges = growth.net.graph.edge_bound();
         let via = layer.via(end);
-        if growth.lay(from, &line, wish, piece, Default::default(), &via).is_some() {
+        let vertex = Vertex { start, piece: coherent, ..Vertex::default() };
+        if growth.lay(from, &line, wish, piece, vertex, &via).is_some() {
             laid = true;
             nodes.insert(head, Some(arrives));
             let new = edges..growth.net.graph.edge_bound();

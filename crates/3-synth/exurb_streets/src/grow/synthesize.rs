@@ -16,8 +16,9 @@ use super::params::Params;
 use super::placing;
 use super::{fill, finish};
 
-/// Growth goes on this far beyond the target, so that its edge looks like its middle.
-const MARGIN_M: f64 = 90.0;
+/// Growth goes on beyond the target by a large block of the example, so that blocks at its edge close
+/// and its edge looks like its middle; by no more and no less than this.
+const MARGIN_M: std::ops::RangeInclusive<f64> = 90.0..=350.0;
 
 /// What growth works on.
 #[derive(Debug)]
@@ -43,7 +44,8 @@ pub struct Start {
 
 /// Grows streets in the target.
 pub fn synthesize(input: &Input, params: &Params, run: &Run) -> Result<StreetGraph, Error> {
-    let grown = offset::inset(input.target, -MARGIN_M);
+    let margin_m = input.examples.iter().map(|e| e.large_block_m).fold(0.0, f64::max);
+    let grown = offset::inset(input.target, -margin_m.clamp(*MARGIN_M.start(), *MARGIN_M.end()));
     let area = grown.first().unwrap_or(input.target);
     let examples: Vec<&Vocabulary> =
         input.starts.iter().map(|s| &input.examples[s.example]).collect();
@@ -102,7 +104,8 @@ pub fn begin(growth: &mut Growth, number: usize, start: &Start) {
             at = start.at;
         }
         let link = Some(style.layer.nodes[own].example);
-        let vertex = Vertex { link, start: number, ..Vertex::default() };
+        let piece = Some(growth.begin_piece(at));
+        let vertex = Vertex { link, start: number, piece, ..Vertex::default() };
         let node = growth.net.add_node(GridPoint::round(at), vertex);
         if placing::continuation(growth, node, own) {
             growth.queue.push_back(Place::Node(node));
