@@ -64,6 +64,7 @@ pub use box_grid::BoxGrid;
 pub use crs::Crs;
 pub use glam::DVec2 as Vec2;
 pub use grid::GridPoint;
+pub use mean_value::MeanValueMap;
 pub use oriented_box::OrientedBox;
 pub use point_index::PointIndex;
 pub use polygon::Polygon;

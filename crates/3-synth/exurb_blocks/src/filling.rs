@@ -5,8 +5,6 @@ use std::sync::Arc;
 
 use exurb_city::{Area, Block, Building, City, Edit, Feature, Parcel, Provenance};
 
-use crate::scoped::Scoped;
-
 /// What becomes of one block.
 #[derive(Clone, Debug, Default)]
 pub struct Filling {
@@ -84,9 +82,4 @@ fn number(parcels: &mut [Parcel], buildings: &mut [Building]) {
         building.id = id;
         building.parcel = renumbered.get(&building.parcel).copied().unwrap_or(0);
     }
-}
-
-/// Blocks that may be filled.
-pub fn may_fill(block: &Block, scoped: &Scoped) -> bool {
-    block.class == exurb_city::BlockClass::Block && scoped.holds(block.id)
 }

@@ -1,6 +1,6 @@
 //! The outline of a block as a list of rings, and the place on it nearest to a point.
 
-use exurb_geom::{GridPoint, Polygon, SegmentGrid, Vec2, polyline};
+use exurb_geom::{GridPoint, Polygon, SegmentGrid, Vec2, grid, polyline};
 
 use crate::ring::Ring;
 
@@ -77,6 +77,9 @@ impl Kerb {
 
     /// Distance of an outline to the kerb of `block` in metres, negative where it reaches over it.
     pub fn clearance_m(&self, outline: &Polygon, block: &Polygon) -> f64 {
+        if self.crosses(outline) {
+            return -1.0;
+        }
         let mut least = f64::INFINITY;
         for p in outline.exterior() {
             let distance_m = self.nearest(p.to_m()).1.distance_m;
@@ -89,6 +92,18 @@ impl Kerb {
             least = least.min(if outline.contains(*corner) { -distance_m } else { distance_m });
         }
         least
+    }
+
+    /// Does the kerb cross the outline?
+    fn crosses(&self, outline: &Polygon) -> bool {
+        let mut near = Vec::new();
+        outline.segments().any(|(a, b)| {
+            self.grid.near(a, b, 0, &mut near);
+            near.iter().any(|id| {
+                let (c, d) = self.grid.segment(*id);
+                grid::cross_properly(a, b, c, d)
+            })
+        })
     }
 
     fn best(&self, p: Vec2, segments: impl Iterator<Item = u32>) -> Option<(usize, Place)> {

@@ -1,12 +1,11 @@
 use exurb_operation::{AnyOperation, erase};
 
-use crate::{footprints, parcels, transfer};
+use crate::auto::Auto;
+use crate::footprints::Footprints;
+use crate::parcels::Parcels;
+use crate::transfer::Transfer;
 
 /// The rooms of this crate.
 pub fn operations() -> Vec<Box<dyn AnyOperation>> {
-    vec![
-        erase::<transfer::Transfer>(),
-        erase::<parcels::Parcels>(),
-        erase::<footprints::Footprints>(),
-    ]
+    vec![erase::<Auto>(), erase::<Transfer>(), erase::<Parcels>(), erase::<Footprints>()]
 }

@@ -1,5 +1,6 @@
 //! Running a recipe: read, then step by step.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
@@ -28,6 +29,8 @@ pub struct Made {
     pub city: City,
     /// Seconds taken by each kind of work.
     pub seconds: Seconds,
+    /// What the steps did and why, counted.
+    pub tallies: BTreeMap<String, u64>,
 }
 
 /// How long each kind of work took, in seconds.
@@ -115,7 +118,7 @@ impl Recipe {
         }
         run.check()?;
         city.metadata.recipe = self.portable(registry).after(&history, registry).print()?;
-        Ok(Made { city, seconds })
+        Ok(Made { city, seconds, tallies: run.tallies() })
     }
 
     /// The examples a step learns from.

@@ -1,11 +1,12 @@
 use std::sync::Arc;
 
 use exurb_city::{Block, BlockClass, Building, City, Feature};
-use exurb_geom::{BoxGrid, GridPoint, Polygon};
+use exurb_geom::{BoxGrid, GridPoint, Polygon, Rigid};
 
 use super::tidy::tidied;
 use crate::kerb::Kerb;
 use crate::library::{Features, OpenLand};
+use crate::outline::plain_outline;
 use crate::refine::Why;
 
 /// What stands in a block of an example.
@@ -19,12 +20,16 @@ pub struct Layout {
     pub weight: f64,
     /// The block.
     pub kerb: Polygon,
+    /// Its outer ring without small notches and spikes.
+    pub outline: Vec<GridPoint>,
     /// What blocks are compared by before anything stands on them.
     pub features: Features,
     /// Class of open land, where that takes most of the block and next to nothing is built on it.
     pub open: Option<Arc<str>>,
     /// Prevailing land use.
     pub land_use: Option<Arc<str>>,
+    /// What the block is for; `None` is an ordinary one.
+    pub kind: Option<Arc<str>>,
     /// Its buildings, in order of their numbers.
     pub footprints: Vec<Footprint>,
     /// Why buildings of the map are not among them, one each.
@@ -76,9 +81,11 @@ pub fn layouts_of(
             id: block.id,
             weight,
             kerb: block.polygon.clone(),
+            outline: plain_outline(&block.polygon),
             features: features[i],
             open: None,
             land_use: block.land_use.clone(),
+            kind: None,
             coverage: 0.0,
             height_m: mean_height_m(&footprints),
             footprints,
@@ -87,6 +94,7 @@ pub fn layouts_of(
         };
         layout.coverage = layout.built_m2() / block.polygon.area_m2();
         layout.open = open_class(&layout, &open);
+        layout.kind = super::kind::kind_of(&layout);
         let told = city.metadata.buildings_complete || layout.open.is_some();
         if told || !layout.footprints.is_empty() {
             out.push(layout);
@@ -99,6 +107,31 @@ impl Layout {
     /// Area of all footprints in m².
     pub fn built_m2(&self) -> f64 {
         self.footprints.iter().map(|f| f.building.polygon.area_m2()).sum()
+    }
+}
+
+impl Layout {
+    /// The layout with everything in it moved. Features keep their place.
+    pub fn moved(&self, motion: &Rigid) -> Self {
+        let polygon = |p: &Polygon| motion.apply_polygon(p).unwrap_or_else(|| p.clone());
+        let building = |b: &Building| Building { polygon: polygon(&b.polygon), ..b.clone() };
+        let moved = |p: &GridPoint| GridPoint::round(motion.apply(p.to_m()));
+        let mut outline: Vec<GridPoint> = self.outline.iter().map(moved).collect();
+        if motion.mirrored {
+            // Counter-clockwise again, from the same first point.
+            outline[1..].reverse();
+        }
+        let footprint = |f: &Footprint| Footprint {
+            building: building(&f.building),
+            parts: f.parts.iter().map(building).collect(),
+            ..f.clone()
+        };
+        Self {
+            kerb: polygon(&self.kerb),
+            outline,
+            footprints: self.footprints.iter().map(footprint).collect(),
+            ..self.clone()
+        }
     }
 }
 

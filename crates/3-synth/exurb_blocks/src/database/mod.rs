@@ -4,6 +4,7 @@
 //! Source: Hartmann 2018, section 5.1.3. Blocks are compared by their kerb lines: where the streets
 //! around differ in width, the paper's centrelines would set the buildings off by half the difference.
 
+mod kind;
 mod layout;
 mod tidy;
 
@@ -12,6 +13,7 @@ use exurb_geom::Vec2;
 use exurb_match::{Attributes, Database, Entry, Match, Outline, Query, Weights};
 use exurb_operation::{Example, Failure, Run};
 
+pub use kind::is_civic;
 pub use layout::{Footprint, Layout};
 
 use crate::library::Surroundings;
@@ -33,7 +35,7 @@ impl BlockDatabase {
             layouts.extend(layouts_of(&example.city, example.weight));
         }
         let entry = |layout: &Layout| Entry {
-            outline: Outline::of(layout.kerb.exterior()),
+            outline: Outline::of(&layout.outline),
             attributes: attributes(layout),
         };
         let shapes = Database::new(layouts.iter().map(entry).collect());

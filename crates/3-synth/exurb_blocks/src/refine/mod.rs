@@ -28,6 +28,8 @@ pub struct Ground<'a> {
     pub block: &'a Polygon,
     /// Its kerb.
     pub kerb: &'a Kerb,
+    /// What stands there and stays.
+    pub standing: &'a [Polygon],
 }
 
 /// A footprint where it is wished for.
@@ -73,15 +75,22 @@ const SLACK_M: f64 = 0.01;
 /// Brings `bodies` apart and off the street; one fate each. Areas and sides change by at most
 /// `tolerance`, a share.
 pub fn refine(ground: &Ground<'_>, bodies: &[Body], tolerance: f64) -> Vec<Fate> {
-    let mut fates: Vec<Fate> = bodies.iter().map(|body| admitted(ground, body)).collect();
+    let count = bodies.len();
+    let stays = ground.standing.iter().map(|p| Body { polygon: p.clone(), clearance_m: 0.0 });
+    let bodies: Vec<Body> = bodies.iter().cloned().chain(stays).collect();
+    let (bodies, stays) = (&bodies[..], |i: usize| i >= count);
+    let admitted = |(i, body)| if stays(i) { Fate::Stays } else { admitted(ground, body) };
+    let mut fates: Vec<Fate> = bodies.iter().enumerate().map(admitted).collect();
     let boxes = BoxGrid::of(bodies.iter().map(|b| &b.polygon));
-    let conflicted = conflicted(ground, bodies, &fates, &boxes);
+    let conflicted = conflicted(ground, bodies, count, &fates, &boxes);
     if !conflicted.contains(&true) {
+        fates.truncate(count);
         return fates;
     }
     let present: Vec<bool> = fates.iter().map(|f| *f == Fate::Stays).collect();
-    let moved = solve::solve(ground, bodies, &present, &conflicted, tolerance);
+    let moved = solve::solve(ground, bodies, count, &present, &conflicted, tolerance);
     settle(ground, bodies, moved, tolerance, &mut fates);
+    fates.truncate(count);
     fates
 }
 
@@ -93,18 +102,25 @@ fn admitted(ground: &Ground<'_>, body: &Body) -> Fate {
     if inside { Fate::Stays } else { Fate::Dropped(Why::Outside) }
 }
 
-/// Which bodies have to move.
-fn conflicted(ground: &Ground<'_>, bodies: &[Body], fates: &[Fate], boxes: &BoxGrid) -> Vec<bool> {
+/// Which of the first `count` bodies have to move; the others stand fast.
+fn conflicted(
+    ground: &Ground<'_>,
+    bodies: &[Body],
+    count: usize,
+    fates: &[Fate],
+    boxes: &BoxGrid,
+) -> Vec<bool> {
     let present = |i: usize| fates[i] == Fate::Stays;
-    let mut out: Vec<bool> =
-        (0..bodies.len()).map(|i| present(i) && !is_off_kerb(ground, &bodies[i])).collect();
+    let mut out: Vec<bool> = (0..bodies.len())
+        .map(|i| i < count && present(i) && !is_off_kerb(ground, &bodies[i]))
+        .collect();
     let mut near = Vec::new();
-    for i in (0..bodies.len()).filter(|i| present(*i)) {
+    for i in (0..count).filter(|i| present(*i)) {
         boxes.meeting_polygon(&bodies[i].polygon, &mut near);
         for j in near.iter().map(|j| *j as usize).filter(|j| *j > i && present(*j)) {
             let (a, b) = (&bodies[i].polygon, &bodies[j].polygon);
             if overlap::shared_m2(a, b, SLACK_M2) > SLACK_M2 {
-                out[if b.area_m2() > a.area_m2() { i } else { j }] = true;
+                out[if j >= count || b.area_m2() > a.area_m2() { i } else { j }] = true;
             }
         }
     }

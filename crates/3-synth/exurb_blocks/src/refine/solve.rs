@@ -9,6 +9,8 @@ use crate::ring::Ring;
 const STEPS: usize = 40;
 /// How often others give way.
 const ROUNDS: usize = 3;
+/// A round ends when the deepest push has not shrunk by a twentieth in so many steps.
+const STALL_STEPS: usize = 8;
 /// Steps at the end of a round in which shapes may give.
 const SOFT_STEPS: usize = 12;
 /// How firmly shapes are held then.
@@ -19,10 +21,12 @@ const STILL_M: f64 = 0.002;
 /// them together again.
 const BEYOND_M: f64 = 0.002;
 
-/// Where bodies come to rest; `None` for those that did not move.
+/// Where bodies come to rest; `None` for those that did not move. Those after the first `count` never
+/// do.
 pub fn solve(
     ground: &Ground<'_>,
     bodies: &[Body],
+    count: usize,
     present: &[bool],
     conflicted: &[bool],
     tolerance: f64,
@@ -33,6 +37,7 @@ pub fn solve(
         corners: ground.block.rings().flatten().map(|p| p.to_m()).collect(),
         solids: solids.map(|((body, present), free)| Solid::of(body, *present, *free)).collect(),
     };
+    world.solids[count..].iter_mut().for_each(|s| s.stands_fast = true);
     world.run();
     let back = |(solid, body): (&Solid, &Body)| solid.polygon(body, tolerance);
     world.solids.iter().zip(bodies).map(back).collect()
@@ -45,9 +50,14 @@ struct Solid {
     clearance_m: f64,
     present: bool,
     free: bool,
-    /// Was it pushed against while it stood fast?
+    /// Was it pushed against before it was free?
     touched: bool,
+    /// Is it never to move?
+    stands_fast: bool,
     bounds: Bounds,
+    /// Of each outer corner where it was when the kerb was last asked, how far that is, and on which
+    /// side: as long as it has not gone as far, it need not be asked again.
+    asked: Vec<(Vec2, f64, bool)>,
 }
 
 impl Solid {
@@ -55,7 +65,18 @@ impl Solid {
         let rest: Vec<Vec<Vec2>> = body.polygon.rings().map(polyline::to_m).collect();
         let bounds = body.polygon.bounds();
         let clearance_m = body.clearance_m;
-        Self { now: rest.clone(), rest, clearance_m, present, free, touched: false, bounds }
+        let asked = vec![(Vec2::INFINITY, 0.0, true); rest[0].len()];
+        Self {
+            now: rest.clone(),
+            rest,
+            clearance_m,
+            present,
+            free,
+            touched: false,
+            stands_fast: false,
+            bounds,
+            asked,
+        }
     }
 
     /// Even-odd, over the rings.
@@ -147,7 +168,9 @@ struct World<'a> {
 impl World<'_> {
     fn run(&mut self) {
         for _ in 0..ROUNDS {
-            for step in 0..STEPS {
+            let (mut least_m, mut since) = (f64::INFINITY, 0);
+            let mut step = 0;
+            while step < STEPS {
                 let mut worst_m: f64 = 0.0;
                 for i in 0..self.solids.len() {
                     if self.solids[i].free {
@@ -160,8 +183,13 @@ impl World<'_> {
                 if worst_m < STILL_M {
                     return;
                 }
+                since = if worst_m < least_m * 0.95 { 0 } else { since + 1 };
+                least_m = least_m.min(worst_m);
+                // Where it comes no nearer, shapes may give at once.
+                step =
+                    if since > STALL_STEPS { (step + 1).max(STEPS - SOFT_STEPS) } else { step + 1 };
             }
-            for solid in self.solids.iter_mut().filter(|s| s.touched) {
+            for solid in self.solids.iter_mut().filter(|s| s.touched && !s.stands_fast) {
                 solid.free = true;
             }
         }
@@ -174,8 +202,15 @@ impl World<'_> {
         let mut pushes = Vec::new();
         let mut worst_m: f64 = 0.0;
         for (corner, p) in solid.now[0].iter().enumerate() {
+            let (before, distance_m, was_inside) = solid.asked[corner];
+            let gone_m = before.distance(*p);
+            if was_inside && distance_m - gone_m > need_m {
+                continue;
+            }
             let (ring, place) = self.ground.kerb.nearest(*p);
-            let inside = self.ground.kerb.contains(*p);
+            let inside =
+                if gone_m < distance_m { was_inside } else { self.ground.kerb.contains(*p) };
+            solid.asked[corner] = (*p, place.distance_m, inside);
             let missing_m =
                 if inside { need_m - place.distance_m } else { need_m + place.distance_m };
             if missing_m <= STILL_M {

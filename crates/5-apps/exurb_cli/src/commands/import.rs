@@ -46,7 +46,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Problem> {
         let write = outputs.write(&city, run)?;
         Ok((city, Seconds { read, write, ..Seconds::default() }))
     })?;
-    summary::report(&city, None, seconds, &[&output], &options.run)
+    summary::report(&city, None, seconds, &Default::default(), &[&output], &options.run)
 }
 
 fn read(options: &Options, run: &Run) -> Result<City, Problem> {

@@ -73,5 +73,5 @@ pub fn perform(
     })?;
     let files: Vec<PathBuf> = recipe.exports.iter().map(|e| into.join(&e.file)).collect();
     let files: Vec<&PathBuf> = files.iter().collect();
-    summary::report(&made.city, example.as_deref(), made.seconds, &files, options)
+    summary::report(&made.city, example.as_deref(), made.seconds, &made.tallies, &files, options)
 }
