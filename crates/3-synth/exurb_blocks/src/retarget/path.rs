@@ -28,11 +28,6 @@ impl Path {
         self.length_m
     }
 
-    /// Is it one straight line, so that all frames along it lie alike?
-    pub fn is_straight(&self) -> bool {
-        self.is_straight
-    }
-
     /// Its points.
     pub fn line(&self) -> &[Vec2] {
         &self.line
@@ -56,6 +51,18 @@ impl Path {
         } else {
             at_m
         }
+    }
+
+    /// `p` as one sees it from the path: x along it, y to its left.
+    pub fn unrolled(&self, p: Vec2) -> Vec2 {
+        let (foot, at_m, k) = polyline::nearest(&self.line, p);
+        let (a, b) = (self.line[k], self.line[k + 1]);
+        let along = (b - a).normalize_or_zero();
+        if at_m <= 0.0 || at_m >= self.length_m {
+            return Vec2::new(at_m + (p - foot).dot(along), along.perp_dot(p - foot));
+        }
+        let side = along.perp_dot(p - a);
+        Vec2::new(at_m, foot.distance(p).copysign(side))
     }
 
     /// The point `at_m` along it, carried on straight beyond its ends.

@@ -28,30 +28,48 @@ impl Slices {
         }
         let first_row = (low / STEP_M - 0.5).ceil() as i64;
         let last_row = (high / STEP_M - 0.5).floor() as i64;
-        let mut crossings: Vec<(i64, f64)> = Vec::with_capacity(4 * rows as usize);
+        let count = (last_row - first_row + 1).max(0) as usize;
+        let mut crossings: Vec<(u32, f64)> = Vec::with_capacity(4 * count);
+        // Where each row's crossings begin, at first their number.
+        let mut starts = vec![0u32; count + 1];
         for ring in rings {
             for (i, b) in ring.iter().enumerate() {
                 let a = ring[(i + ring.len() - 1) % ring.len()];
                 let (a, b) = if a.y <= b.y { (a, *b) } else { (*b, a) };
-                let from = (a.y / STEP_M - 0.5).ceil() as i64;
+                let from = ((a.y / STEP_M - 0.5).ceil() as i64).max(first_row);
                 let slope = (b.x - a.x) / (b.y - a.y);
-                for row in from.max(first_row)..=last_row {
+                for row in from..=last_row {
                     let y = (row as f64 + 0.5) * STEP_M;
                     if y >= b.y {
                         break;
                     }
-                    crossings.push((row, a.x + slope * (y - a.y)));
+                    let k = (row - first_row) as u32;
+                    crossings.push((k, a.x + slope * (y - a.y)));
+                    starts[k as usize + 1] += 1;
                 }
             }
         }
-        crossings.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        for k in 0..count {
+            starts[k + 1] += starts[k];
+        }
+        let mut sorted = vec![0.0; crossings.len()];
+        let mut next = starts.clone();
+        for (row, x) in crossings {
+            let slot = &mut next[row as usize];
+            // Rows hold a handful: each crossing is moved down to its place.
+            let mut at = *slot as usize;
+            while at > starts[row as usize] as usize && sorted[at - 1] > x {
+                sorted[at] = sorted[at - 1];
+                at -= 1;
+            }
+            sorted[at] = x;
+            *slot += 1;
+        }
         let mut out = Self { first_row, ..Self::default() };
-        let mut rest = &crossings[..];
-        for row in first_row..=last_row {
-            let (own, others) = rest.split_at(rest.partition_point(|c| c.0 <= row));
-            out.stretches.extend(own.chunks_exact(2).map(|c| (c[0].1, c[1].1)));
+        for k in 0..count {
+            let row = &sorted[starts[k] as usize..starts[k + 1] as usize];
+            out.stretches.extend(row.chunks_exact(2).map(|c| (c[0], c[1])));
             out.ends.push(out.stretches.len() as u32);
-            rest = others;
         }
         out
     }
@@ -83,12 +101,6 @@ impl Slices {
         self.stretches.iter().map(shared).sum::<f64>() * STEP_M / (to_m - from_m)
     }
 
-    /// The outermost places of all stretches.
-    pub fn extent(&self) -> Option<(f64, f64)> {
-        let low = self.stretches.iter().map(|s| s.0).reduce(f64::min)?;
-        Some((low, self.stretches.iter().map(|s| s.1).fold(low, f64::max)))
-    }
-
     fn row(&self, row: i64) -> &[(f64, f64)] {
         let k = (row - self.first_row) as usize;
         let start = if k == 0 { 0 } else { self.ends[k - 1] };
@@ -98,7 +110,7 @@ impl Slices {
 
 #[cfg(test)]
 mod tests {
-    use exurb_geom::{GridPoint, Polygon, overlay, polyline, trig};
+    use exurb_geom::{Polygon, overlay, polyline, trig};
     use proptest::prelude::*;
 
     use super::*;
@@ -135,8 +147,6 @@ mod tests {
         let (outer, court) = (square(0.0, 20.0), square(5.0, 15.0));
         let ring = Slices::of([&outer[..], &court[..]]);
         assert_eq!(ring.area_m2(), 300.0);
-        assert_eq!(ring.extent(), Some((0.0, 20.0)));
         assert_eq!(ring.depth_m(8.0, 9.0), 10.0);
-        let _ = GridPoint::default();
     }
 }

@@ -7,7 +7,7 @@ use super::correspondence::Correspondence;
 use super::groups::{Element, Group, Groups, Kind};
 use super::guidance::{Guidance, middle};
 use super::label::{self, Problem};
-use super::path::{Path, inverse};
+use super::path::Path;
 use super::slices::Slices;
 use super::spacing::{Wish, spaced};
 use crate::motion::Motion;
@@ -450,16 +450,9 @@ impl<'t, 'a> Line<'t, 'a> {
     /// Adds to `taken` how much of the usual depth an image covers at each step.
     fn cover(&self, image: &[Vec<Vec2>], depth_m: f64, taken: &mut [f64]) {
         let Some((first, last)) = self.steps_of(image, 0) else { return };
-        let whole = self.track.path.is_straight().then(|| self.in_frame(image, 0.0, 0.0));
+        let slices = self.unrolled(image);
         for (step, taken) in taken.iter_mut().enumerate().take(last + 1).skip(first) {
-            let (from, to) = (self.at_m(step), self.at_m(step + 1));
-            let covered = match &whole {
-                Some(slices) => slices.depth_m(from, to),
-                None => {
-                    let half = self.step_m / 2.0;
-                    self.in_frame(image, from, to).depth_m(-half, half)
-                }
-            };
+            let covered = slices.depth_m(self.at_m(step), self.at_m(step + 1));
             *taken += covered / (depth_m * TAKEN_DEPTH);
         }
     }
@@ -479,17 +472,14 @@ impl<'t, 'a> Line<'t, 'a> {
         let mut costs = vec![f64::INFINITY; steps];
         let at_m = self.track.path.project(middle(&image[0]));
         let turn = if self.track.is_row { Some(turn_of(element, image)) } else { None };
-        let whole = self.track.path.is_straight().then(|| self.in_frame(image, 0.0, 0.0));
+        let slices = self.unrolled(image);
         if let Some((first, last)) = self.steps_of(image, length) {
             for (start, cost) in costs.iter_mut().enumerate().take(last + 1).skip(first) {
                 if start + length > steps {
                     break;
                 }
                 let (from, to) = (self.at_m(start), self.at_m(start + length));
-                let shared = match &whole {
-                    Some(slices) => element.slices.shared_m2((from + to) / 2.0, slices),
-                    None => element.slices.shared_m2(0.0, &self.in_frame(image, from, to)),
-                };
+                let shared = element.slices.shared_m2((from + to) / 2.0, &slices);
                 let share = (shared / element.area_m2).min(1.0);
                 let least = if element.kind == Kind::Fixed { FIXED_SHARE } else { 0.0 };
                 if share <= least || !work.is_free(&self.rings(element, from, to)) {
@@ -536,11 +526,11 @@ impl<'t, 'a> Line<'t, 'a> {
         (first <= last).then_some((first, last))
     }
 
-    /// Rings in slices, seen from the frame of a stretch.
-    fn in_frame(&self, rings: &[Vec<Vec2>], from_m: f64, to_m: f64) -> Slices {
-        let to_frame = inverse(&self.track.path.frame(from_m, to_m));
+    /// Rings in slices, seen from the path.
+    fn unrolled(&self, rings: &[Vec<Vec2>]) -> Slices {
+        let path = &self.track.path;
         let moved: Vec<Vec<Vec2>> =
-            rings.iter().map(|r| r.iter().map(|p| to_frame.apply(*p)).collect()).collect();
+            rings.iter().map(|r| r.iter().map(|p| path.unrolled(*p)).collect()).collect();
         Slices::of(moved.iter().map(|r| &r[..]))
     }
 
