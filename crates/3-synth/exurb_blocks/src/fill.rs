@@ -132,7 +132,7 @@ fn filling(
     choosing: &Choosing,
     limits: Limits,
 ) -> Option<Filling> {
-    match choice {
+    let made = match choice {
         Choice::None => None,
         Choice::Open(class) => Some(Filling {
             things: along.to_vec(),
@@ -146,7 +146,8 @@ fn filling(
             let suits = chosen.cost <= limits.most_cost && chosen.kept >= limits.least_kept;
             (suits || chosen.is_same).then(|| of_candidates(block, list, along, learned, choosing))
         }
-    }
+    };
+    made.map(|f| if choosing.parcels { f.with_cadastre(block, choosing.pavement) } else { f })
 }
 
 fn of_candidates(

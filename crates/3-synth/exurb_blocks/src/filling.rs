@@ -3,7 +3,11 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use exurb_city::{Area, Block, Building, City, Edit, Feature, Parcel, Provenance};
+use exurb_city::{Area, Block, Building, City, Edit, Feature, Parcel, Provenance, area};
+use exurb_geom::{GridPoint, Polygon, offset};
+
+use crate::kerb::Kerb;
+use crate::parcels::{ACCESS_M, Holding, cadastre};
 
 /// What becomes of one block.
 #[derive(Clone, Debug, Default)]
@@ -15,7 +19,7 @@ pub struct Filling {
     /// New features; likewise.
     pub things: Vec<Feature>,
     /// New open land.
-    pub open: Vec<(exurb_geom::Polygon, Arc<str>)>,
+    pub open: Vec<(Polygon, Arc<str>)>,
     /// Prevailing land use.
     pub land_use: Option<Arc<str>>,
     /// Pavement, in metres.
@@ -68,6 +72,48 @@ pub fn written(city: &City, mut blocks: Vec<Block>, fillings: Vec<Option<Filling
         features: Some(things),
         land_use: Some(land_use),
         ..Edit::default()
+    }
+}
+
+impl Filling {
+    /// Cuts the block's ground into parcels around the buildings; the pavement is as narrow as the
+    /// building nearest to the kerb needs. Ground without buildings is one parcel.
+    pub fn with_cadastre(mut self, block: &Block, most_pavement_m: f64) -> Self {
+        let kerb = Kerb::of(&block.polygon);
+        let whole: Vec<usize> =
+            (0..self.buildings.len()).filter(|i| !self.buildings[*i].is_part).collect();
+        let clearance = |i: &usize| kerb.clearance_m(&self.buildings[*i].polygon, &block.polygon);
+        let least_m = whole.iter().map(clearance).fold(most_pavement_m, f64::min);
+        // In whole centimetres, rounded down.
+        self.pavement_m = (least_m.max(0.0) * 100.0).floor() / 100.0;
+        let mut parcel = vec![0; self.buildings.len()];
+        for ground in offset::inset(&block.polygon, self.pavement_m) {
+            let on = |i: &&usize| {
+                ground.contains(GridPoint::round(self.buildings[**i].polygon.interior_point()))
+            };
+            let here: Vec<usize> = whole.iter().filter(on).copied().collect();
+            let footprints: Vec<&Polygon> =
+                here.iter().map(|i| &self.buildings[*i].polygon).collect();
+            for Holding { lot, footprints } in cadastre(&ground, &footprints) {
+                let id = self.parcels.len() as u32 + 1;
+                footprints.iter().for_each(|k| parcel[here[*k]] = id);
+                self.parcels.push(Parcel {
+                    id,
+                    block: block.id,
+                    street_access: lot.frontage_m >= ACCESS_M,
+                    land_use: self.land_use.clone().filter(|class| area::is_open(class)),
+                    polygon: lot.polygon,
+                    provenance: self.provenance.clone(),
+                });
+            }
+        }
+        // Parts follow the building before them.
+        let mut last = 0;
+        for (building, parcel) in self.buildings.iter_mut().zip(parcel) {
+            last = if building.is_part { last } else { parcel };
+            building.parcel = last;
+        }
+        self
     }
 }
 

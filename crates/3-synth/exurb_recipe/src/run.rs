@@ -9,7 +9,9 @@ use exurb_city::{City, Imported};
 use exurb_operation::{Example, Run, Scope};
 use serde_json::Value;
 
-use crate::{Error, Recipe, Registry, Source, Step, Target, Within, open, registry, target};
+use crate::{
+    Error, Recipe, Registry, Source, Step, Target, Within, attached, open, registry, target,
+};
 
 /// What a recipe reads before it works.
 #[derive(Clone, Debug)]
@@ -110,7 +112,8 @@ impl Recipe {
             let chosen = self.choose(step, &city, &examples);
             run.phase(&step.op);
             let run = run.seeded(step.seed.unwrap_or(self.seed));
-            let params = Value::Object(step.params.clone());
+            let read = attached::read(&step.params, &operation.schema(), &city.frame, folder)?;
+            let params = Value::Object(read);
             let outcome = operation.run(&city, &scope, &chosen, params, &run)?;
             seconds.learn += outcome.seconds.learn;
             seconds.synthesise += outcome.seconds.synthesise;

@@ -21,7 +21,7 @@ pub struct Params {
 
 impl Default for Params {
     fn default() -> Self {
-        Self { alike: 1.0, most_cost: 0.4, least_kept: 0.35, choosing: Choosing::default() }
+        Self { alike: 1.0, most_cost: 0.4, least_kept: 0.6, choosing: Choosing::default() }
     }
 }
 

@@ -8,10 +8,10 @@ use super::descriptor::Descriptor;
 use super::{Choosing, Learned, Ways};
 use crate::database::Layout;
 use crate::kerb::Kerb;
-use crate::lay::{Laid, Spacing, Wish, lay};
+use crate::lay::{Laid, Spacing, lay};
 use crate::library::OpenNearby;
 use crate::refine::Ground;
-use crate::retarget::{Correspondence, Source};
+use crate::retarget::{Correspondence, source_of, wishes};
 use crate::ring::Ring;
 
 /// How a layout came into a block.
@@ -121,16 +121,10 @@ fn retargeted(
     } else {
         layout
     };
-    let polygons = layout.footprints.iter().map(|f| f.building.polygon.clone()).collect();
-    let source = Source::of(&layout.outline, polygons, &ways.settings);
+    let source = source_of(layout, &ways.settings);
     let link = Correspondence::by_warp(&found.warp, source.ring(), &Ring::of(&site.ring));
-    let placed = source.retarget(&ground.block, &site.ring, &link, &ways.settings);
-    let footprints: Vec<Wish<'_, _>> = placed
-        .iter()
-        .flat_map(|p| {
-            p.members.iter().map(|m| Wish { what: &layout.footprints[*m], motion: p.motion })
-        })
-        .collect();
+    let placed = source.retarget(ground.block, &site.ring, &link, &ways.settings);
+    let footprints = wishes(layout, &placed);
     let things = crate::retarget::things(layout, &source, &placed, ground.block, &site.ring, &link);
     lay(layout, &footprints, &things, ground, open, spacing)
 }

@@ -40,6 +40,8 @@ pub struct Choosing {
     /// Weight of how high blocks are built.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub height_weight: f64,
+    /// Cut the ground into parcels around the buildings.
+    pub parcels: bool,
     /// Distance between kerb and footprints; less where the footprint stands nearer to the kerb in the
     /// example.
     #[schemars(range(min = 0.0, max = 20.0), extend("x-unit" = "m"))]
@@ -66,6 +68,7 @@ impl Default for Choosing {
             land_use_weight: 0.1,
             density_weight: 0.2,
             height_weight: 0.1,
+            parcels: true,
             pavement: exurb_city::block::PAVEMENT_M,
             tolerance: 0.1,
         }

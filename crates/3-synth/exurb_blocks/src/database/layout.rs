@@ -69,38 +69,56 @@ pub fn layouts_of(
     weight: f64,
 ) -> Vec<Layout> {
     let open = OpenLand::of(city);
-    let mut homes = Homes::of(city, blocks);
+    let homes = homes_of(city, blocks);
     let mut out = Vec::new();
-    for (i, block) in blocks.iter().enumerate() {
-        if block.class == BlockClass::Island || block.polygon.area_m2() < LEAST_BLOCK_M2 {
-            continue;
-        }
-        let (footprints, flaws) = footprints(city, block, &homes.buildings[i], &open);
-        let mut layout = Layout {
-            source: city.metadata.name.clone(),
-            id: block.id,
-            weight,
-            kerb: block.polygon.clone(),
-            outline: plain_outline(&block.polygon),
-            features: features[i],
-            open: None,
-            land_use: block.land_use.clone(),
-            kind: None,
-            coverage: 0.0,
-            height_m: mean_height_m(&footprints),
-            footprints,
-            flaws,
-            things: std::mem::take(&mut homes.things[i]),
-        };
-        layout.coverage = layout.built_m2() / block.polygon.area_m2();
-        layout.open = open_class(&layout, &open);
-        layout.kind = super::kind::kind_of(&layout);
+    for ((block, home), features) in blocks.iter().zip(homes).zip(features) {
+        let Some(layout) = layout(city, block, home, *features, weight, &open) else { continue };
         let told = city.metadata.buildings_complete || layout.open.is_some();
         if told || !layout.footprints.is_empty() {
             out.push(layout);
         }
     }
     out
+}
+
+/// The layout of one block; `None` for islands and slivers.
+pub fn layout_of(city: &City, block: &Block, features: Features) -> Option<Layout> {
+    let home = homes_of(city, std::slice::from_ref(block)).pop()?;
+    layout(city, block, home, features, 1.0, &OpenLand::of(city))
+}
+
+fn layout(
+    city: &City,
+    block: &Block,
+    home: Home,
+    features: Features,
+    weight: f64,
+    open: &OpenLand,
+) -> Option<Layout> {
+    if block.class == BlockClass::Island || block.polygon.area_m2() < LEAST_BLOCK_M2 {
+        return None;
+    }
+    let (footprints, flaws) = footprints(city, block, &home.buildings, open);
+    let mut layout = Layout {
+        source: city.metadata.name.clone(),
+        id: block.id,
+        weight,
+        kerb: block.polygon.clone(),
+        outline: plain_outline(&block.polygon),
+        features,
+        open: None,
+        land_use: block.land_use.clone(),
+        kind: None,
+        coverage: 0.0,
+        height_m: mean_height_m(&footprints),
+        footprints,
+        flaws,
+        things: home.things,
+    };
+    layout.coverage = layout.built_m2() / block.polygon.area_m2();
+    layout.open = open_class(&layout, open);
+    layout.kind = super::kind::kind_of(&layout);
+    Some(layout)
 }
 
 impl Layout {
@@ -150,44 +168,40 @@ fn mean_height_m(footprints: &[Footprint]) -> Option<f64> {
     (area > 0.0).then(|| sum / area)
 }
 
-/// Indices of the buildings, and the features, of each block.
-struct Homes {
-    buildings: Vec<Vec<u32>>,
-    things: Vec<Vec<Feature>>,
+/// Indices of the buildings, and the features, of a block.
+#[derive(Clone, Default)]
+struct Home {
+    buildings: Vec<u32>,
+    things: Vec<Feature>,
 }
 
-impl Homes {
-    /// By the numbers of blocks that elements carry, else by a point inside.
-    fn of(city: &City, blocks: &[Block]) -> Self {
-        let numbers: std::collections::BTreeMap<u32, usize> =
-            blocks.iter().enumerate().map(|(i, b)| (b.id, i)).collect();
-        let told = !city.blocks.is_empty();
-        let boxes = BoxGrid::of(blocks.iter().map(|b| &b.polygon));
-        let mut near = Vec::new();
-        let mut home = |number: u32, at: &dyn Fn() -> GridPoint| {
-            if told {
-                return numbers.get(&number).copied();
-            }
-            let p = at();
-            boxes.meeting(p, p, &mut near);
-            near.iter().map(|n| *n as usize).find(|n| blocks[*n].polygon.contains(p))
-        };
-        let mut out = Self {
-            buildings: vec![Vec::new(); blocks.len()],
-            things: vec![Vec::new(); blocks.len()],
-        };
-        for (i, b) in city.buildings.iter().enumerate() {
-            if let Some(k) = home(b.block, &|| GridPoint::round(b.polygon.interior_point())) {
-                out.buildings[k].push(i as u32);
-            }
+/// By the numbers of blocks that elements carry, else by a point inside.
+fn homes_of(city: &City, blocks: &[Block]) -> Vec<Home> {
+    let numbers: std::collections::BTreeMap<u32, usize> =
+        blocks.iter().enumerate().map(|(i, b)| (b.id, i)).collect();
+    let told = !city.blocks.is_empty();
+    let boxes = BoxGrid::of(blocks.iter().map(|b| &b.polygon));
+    let mut near = Vec::new();
+    let mut home = |number: u32, at: &dyn Fn() -> GridPoint| {
+        if told {
+            return numbers.get(&number).copied();
         }
-        for thing in city.features.iter() {
-            if let Some(k) = home(thing.block, &|| GridPoint::round(super::middle(&thing.shape))) {
-                out.things[k].push(thing.clone());
-            }
+        let p = at();
+        boxes.meeting(p, p, &mut near);
+        near.iter().map(|n| *n as usize).find(|n| blocks[*n].polygon.contains(p))
+    };
+    let mut out = vec![Home::default(); blocks.len()];
+    for (i, b) in city.buildings.iter().enumerate() {
+        if let Some(k) = home(b.block, &|| GridPoint::round(b.polygon.interior_point())) {
+            out[k].buildings.push(i as u32);
         }
-        out
     }
+    for thing in city.features.iter() {
+        if let Some(k) = home(thing.block, &|| GridPoint::round(super::middle(&thing.shape))) {
+            out[k].things.push(thing.clone());
+        }
+    }
+    out
 }
 
 fn footprints(

@@ -8,7 +8,7 @@ mod kind;
 mod layout;
 mod tidy;
 
-use exurb_city::{City, FeatureShape, block};
+use exurb_city::{Block, City, FeatureShape, block};
 use exurb_geom::Vec2;
 use exurb_match::{Attributes, Database, Entry, Match, Outline, Query, Weights};
 use exurb_operation::{Example, Failure, Run};
@@ -40,6 +40,12 @@ impl BlockDatabase {
         };
         let shapes = Database::new(layouts.iter().map(entry).collect());
         Ok(Self { layouts, shapes })
+    }
+
+    /// The layout of one block of a city, empty ones included; `None` for islands and slivers.
+    pub fn layout_of(city: &City, blocks: &[Block], at: usize) -> Option<Layout> {
+        let features = Surroundings::of(blocks).features(&blocks[at], &city.streets);
+        layout::layout_of(city, &blocks[at], features)
     }
 
     /// The layouts most like a query; see [`Database::query`].

@@ -1,7 +1,7 @@
 //! Which place of one outline belongs to which of another.
 
 use exurb_geom::{GridPoint, MeanValueMap, Vec2};
-use exurb_match::{SAMPLES, time_warp::Warp};
+use exurb_match::{Contexts, Outline, SAMPLES, Warp, outer_radius_m, time_warp};
 
 use crate::ring::Ring;
 
@@ -25,7 +25,7 @@ const LEAST_STEP_M: f64 = 0.5;
 /// Outlines are followed to within this, in metres.
 const FOLLOW_M: f64 = 0.3;
 /// Vertices nearer than this are the same in an edited outline, in metres.
-const SAME_M: f64 = 0.01;
+const SAME_M: f64 = 0.03;
 
 impl Correspondence {
     /// Of an example's outline to a block's, by the path of the time warp whose first samples are the
@@ -59,9 +59,12 @@ impl Correspondence {
         Self { knots, ..path }.tidied()
     }
 
-    /// [`Self::by_warp`] for closed lines.
-    pub fn by_warp_polygons(warp: &Warp, from: &[GridPoint], to: &[GridPoint]) -> Self {
-        Self::by_warp(warp, &Ring::of(from), &Ring::of(to))
+    /// [`Self::by_warp`] of two closed lines, by a time warp of their own.
+    pub fn by_shape(from: &[GridPoint], to: &[GridPoint]) -> Self {
+        let (a, b) = (Outline::of(from), Outline::of(to));
+        let radius_m = outer_radius_m(&b);
+        let costs = Contexts::of(&b, radius_m).costs(&Contexts::of(&a, radius_m));
+        Self::by_warp(&time_warp::cyclic(&costs), &Ring::of(from), &Ring::of(to))
     }
 
     /// Of an outline to what an edit made of it: vertices that did not move belong to themselves, runs
@@ -241,26 +244,17 @@ fn stayed(from: &[GridPoint], to: &[GridPoint]) -> Option<Vec<(usize, usize)>> {
 
 #[cfg(test)]
 mod tests {
-    use exurb_match::{Contexts, Outline, outer_radius_m, time_warp};
-
     use super::*;
 
     fn ring(corners: &[(f64, f64)]) -> Vec<GridPoint> {
         corners.iter().map(|(x, y)| GridPoint::m(*x, *y)).collect()
     }
 
-    fn by_warp(from: &[GridPoint], to: &[GridPoint]) -> Correspondence {
-        let (a, b) = (Outline::of(from), Outline::of(to));
-        let radius = outer_radius_m(&b);
-        let costs = Contexts::of(&b, radius).costs(&Contexts::of(&a, radius));
-        Correspondence::by_warp(&time_warp::cyclic(&costs), &Ring::of(from), &Ring::of(to))
-    }
-
     #[test]
     fn corners_go_to_corners() {
         let from = ring(&[(0., 0.), (100., 0.), (100., 40.), (0., 40.)]);
         let to = ring(&[(130., 0.), (130., 50.), (0., 45.), (0., 0.)]);
-        let link = by_warp(&from, &to);
+        let link = Correspondence::by_shape(&from, &to);
         let (a, b) = (Ring::of(&from), Ring::of(&to));
         for s in [0.0, 100.0, 140.0, 240.0] {
             let there = b.point_at(link.to_target(s));
@@ -276,7 +270,7 @@ mod tests {
     fn positions_only_go_forward() {
         let from = ring(&[(0., 0.), (60., 0.), (60., 20.), (20., 20.), (20., 60.), (0., 60.)]);
         let to = ring(&[(0., 0.), (90., 10.), (70., 80.), (10., 70.)]);
-        let link = by_warp(&from, &to);
+        let link = Correspondence::by_shape(&from, &to);
         let along: Vec<f64> = (0..480).map(|k| link.to_target(f64::from(k) * 0.5)).collect();
         assert!(along.windows(2).all(|w| w[1] > w[0]));
     }

@@ -1,6 +1,6 @@
-/// What a user may turn.
+/// How layouts are laid out anew.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields, default)]
+#[serde(default)]
 pub struct Settings {
     /// Elements within this distance of a side stand along it (the paper's τ).
     #[schemars(range(min = 1.0, max = 200.0), extend("x-unit" = "m"))]
@@ -31,6 +31,8 @@ pub struct Settings {
     pub stretch: f64,
     /// Measure costs in square metres missed, as printed in the paper, instead of metres of length.
     pub printed_cost: bool,
+    /// Fit layouts of few large buildings as a whole, stretched a little, instead of element by element.
+    pub fit_whole: bool,
     /// Sides whose ends did not move keep their layout.
     pub local: bool,
     /// How far each side of the new outline follows the guidance map, from 0 (keeps its layout) to 1, in
@@ -51,8 +53,49 @@ impl Default for Settings {
             turn_cost: 0.5,
             stretch: 0.15,
             printed_cost: false,
+            fit_whole: true,
             local: false,
             side_weights: Vec::new(),
         }
+    }
+}
+
+/// What a user may turn.
+#[derive(
+    Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
+)]
+#[serde(default)]
+pub struct Params {
+    /// Re-target the layout of the block of this number, from itself; 0 re-targets layouts of like
+    /// example blocks into all blocks.
+    pub block: u32,
+    /// The new kerb line of that block, the polygon of a GeoJSON or GeoPackage file.
+    #[schemars(extend("x-value-name" = "NEW.geojson"))]
+    pub outline: exurb_operation::PolygonFile,
+    /// Write the deformed layout that guides the result as features `guidance`.
+    pub guidance: bool,
+    /// How layouts are laid out anew.
+    #[serde(flatten)]
+    pub settings: Settings,
+    /// How example blocks are chosen.
+    #[serde(flatten)]
+    pub choosing: crate::choice::Choosing,
+}
+
+impl exurb_operation::Params for Params {
+    fn check(&self) -> Result<(), String> {
+        if self.block == 0 && !self.outline.is_none() {
+            return Err("`outline` is given without `block`; name the block to change".to_owned());
+        }
+        if self.side_weights_out_of_range() {
+            return Err("`side_weights` holds a value outside 0 to 1".to_owned());
+        }
+        Ok(())
+    }
+}
+
+impl Params {
+    fn side_weights_out_of_range(&self) -> bool {
+        self.settings.side_weights.iter().any(|w| !(0.0..=1.0).contains(w))
     }
 }

@@ -10,6 +10,7 @@ use super::label::{self, Problem};
 use super::path::Path;
 use super::slices::Slices;
 use super::spacing::{Wish, spaced};
+use super::whole;
 use crate::motion::Motion;
 use crate::ring::{Ring, Side};
 
@@ -25,9 +26,12 @@ pub struct Placement {
 /// A layout that can be laid out anew in other outlines, over and over.
 #[derive(Clone, Debug)]
 pub struct Source {
+    outline: Vec<GridPoint>,
     ring: Ring,
     groups: Groups,
     polygons: Vec<Polygon>,
+    /// Is it to be fitted as a whole?
+    is_whole: bool,
 }
 
 /// Elements whose group is not theirs reach this far over its ends, in metres.
@@ -54,11 +58,23 @@ const MOST_PAD_M: f64 = 15.0;
 const TAKEN_DEPTH: f64 = 0.5;
 
 impl Source {
-    /// Analyses a layout once. O(polygons · outline).
-    pub fn of(outline: &[GridPoint], polygons: Vec<Polygon>, settings: &Settings) -> Self {
+    /// Analyses a layout once; polygons that `once` names are never repeated. O(polygons · outline).
+    pub fn of(
+        outline: &[GridPoint],
+        polygons: Vec<Polygon>,
+        once: &[bool],
+        settings: &Settings,
+    ) -> Self {
         let ring = Ring::of(outline);
-        let groups = Groups::of(&ring, &polygons, settings);
-        Self { ring, groups, polygons }
+        let mut groups = Groups::of(&ring, &polygons, settings);
+        for element in groups.groups.iter_mut().flat_map(|g| &mut g.elements) {
+            if element.members.iter().any(|m| once.get(*m) == Some(&true)) {
+                element.kind = Kind::Fixed;
+            }
+        }
+        let block_m2 = exurb_geom::polygon::signed_area_m2(outline).abs();
+        let is_whole = whole::is_whole(block_m2, &polygons);
+        Self { outline: outline.to_vec(), ring, groups, polygons, is_whole }
     }
 
     /// The outline as positions.
@@ -81,6 +97,11 @@ impl Source {
         settings: &Settings,
     ) -> Vec<Placement> {
         let target = Ring::of(outline);
+        if self.is_whole && settings.fit_whole {
+            let motion = whole::fitted(&self.outline, &self.ring, &target, link);
+            let place = |i| Placement { members: vec![i], motion };
+            return (0..self.polygons.len()).map(place).collect();
+        }
         let guidance = Guidance::new(&self.ring, &target, domain, link);
         let mut work =
             Work { source: self, guidance, settings, placed: Vec::new(), bodies: Vec::new() };

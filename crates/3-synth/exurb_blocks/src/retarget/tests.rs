@@ -31,7 +31,7 @@ fn block() -> (Vec<GridPoint>, Vec<Polygon>) {
 fn an_undeformed_layout_comes_back() {
     let (outline, houses) = block();
     let settings = Settings::default();
-    let source = Source::of(&outline, houses.clone(), &settings);
+    let source = Source::of(&outline, houses.clone(), &[], &settings);
     let domain = Polygon::new(outline.clone(), vec![]).expect("has area");
     let link = Correspondence::by_vertices(&outline, &outline).expect("vertices stayed");
     let placed = source.retarget(&domain, &outline, &link, &settings);
