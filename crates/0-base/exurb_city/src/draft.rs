@@ -149,7 +149,9 @@ impl Draft {
             target = common.next().ok_or_else(|| empty(&name))?;
         }
         if let Some(part) = options.part {
-            let square = densest_square::densest_square(&self.streets.ways, target.bounds());
+            let counted = self.streets.ways.iter().filter(|w| w.street.role() != Role::Other);
+            let lines = counted.map(|w| &w.line[..]);
+            let square = densest_square::densest_square(lines, target.bounds());
             let half = rectangle(densest_square::half(square, part));
             let mut common =
                 half.into_iter().flat_map(|half| overlay::intersection(&half, &target));

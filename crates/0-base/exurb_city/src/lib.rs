@@ -16,6 +16,7 @@
 //! | [`mod@simplify`] | dual carriageways → one street, small roundabouts → junctions |
 //! | [`hierarchy`] | levels of streets, and strokes |
 //! | [`mod@laws`] | what every city keeps, and its likeness gates |
+//! | [`densest_square`] | the window that stands for a city in comparisons |
 //! | [`Edit`] | what an operation changes |
 
 pub mod area;
@@ -24,7 +25,7 @@ pub mod building;
 mod city;
 pub mod completeness;
 mod cut;
-mod densest_square;
+pub mod densest_square;
 mod draft;
 mod edit;
 mod facades;
