@@ -82,23 +82,26 @@ pub fn choose(
     run: &Run,
 ) -> Result<Vec<Choice>, Failure> {
     let open = OpenLand::of(city);
-    let given: Vec<Option<std::sync::Arc<str>>> = blocks
-        .par_iter()
-        .zip(wanted)
-        .map(|(block, wanted)| {
-            let share = if *wanted { open.share(&block.polygon) } else { None };
-            share.filter(|(_, s)| *s >= GIVEN_OPEN_SHARE).map(|(class, _)| class)
-        })
-        .collect();
-    let fills = |i: usize| wanted[i] && given[i].is_none();
     let standing = Standing::of(city, blocks, wanted);
     let site =
-        |i: usize| fills(i).then(|| Site::of(&blocks[i], standing.within(&blocks[i].polygon)));
-    let sites: Vec<Option<Site<'_>>> = (0..blocks.len()).into_par_iter().map(site).collect();
+        |i: usize| wanted[i].then(|| Site::of(&blocks[i], standing.within(&blocks[i].polygon)));
+    let mut sites: Vec<Option<Site<'_>>> = (0..blocks.len()).into_par_iter().map(site).collect();
     run.check()?;
-    let around = Around::of(city, blocks, wanted);
     let same: Vec<Option<Match>> =
         sites.par_iter().map(|site| site.as_ref().and_then(|s| learned.same(s))).collect();
+    // A block that lies in an example as it is takes after it, park or not.
+    let given = |(block, same): (&Block, &Option<Match>)| {
+        let share = if same.is_none() { open.share(&block.polygon) } else { None };
+        share.filter(|(_, s)| *s >= GIVEN_OPEN_SHARE).map(|(class, _)| class)
+    };
+    let given: Vec<Option<std::sync::Arc<str>>> = blocks.par_iter().zip(&same).map(given).collect();
+    for (site, given) in sites.iter_mut().zip(&given) {
+        if given.is_some() {
+            *site = None;
+        }
+    }
+    run.check()?;
+    let around = Around::of(city, blocks, wanted);
     let kinds = around.kinds(&sites, &given, &same, learned, choosing, run);
     let field = field::field(&around.places, &learned.samples, learned.spread.coherence);
     let tried: Vec<Result<Vec<Candidate>, Failure>> = (0..blocks.len())
