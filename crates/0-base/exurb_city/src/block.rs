@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use exurb_geom::{Polygon, Roadside, SegmentGrid, Vec2, grid, offset, overlay};
+use exurb_geom::{Polygon, Roadside, SegmentGrid, Vec2, grid, offset, overlay, polyline};
 use exurb_graph::{Dart, EdgeId, Face, FaceId, Faces};
 use rayon::prelude::*;
 
-use crate::{Provenance, StreetGraph};
+use crate::{Class, Provenance, StreetGraph};
 
 /// Is the block wide enough to build on?
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -145,12 +145,20 @@ fn carriageways(graph: &StreetGraph, face: &Face) -> Roadside {
         along_cycle(graph, cycle, &half_width_m, &mut out);
     }
     for id in &face.inner {
-        let (mut line, width_m) = (graph.edge(*id).line_m(), half_width_m(*id));
+        let edge = graph.edge(*id);
+        let (mut line, width_m) = (edge.line_m(), half_width_m(*id));
+        for end in [edge.from, edge.to] {
+            // One drives around the end of a street; a pedestrian one ends before a door.
+            if graph.degree(end) > 1 || edge.data.class != Class::Pedestrian {
+                out.disc(line[0], width_m);
+            } else if polyline::length(&line) > 3.0 * width_m {
+                line = polyline::part(&line, width_m, f64::INFINITY);
+            }
+            line.reverse();
+        }
         out.left_of(&line, width_m);
-        out.disc(line[0], width_m);
         line.reverse();
         out.left_of(&line, width_m);
-        out.disc(line[0], width_m);
     }
     out
 }

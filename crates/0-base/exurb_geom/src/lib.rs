@@ -15,6 +15,7 @@
 //! | [`split`] | cutting a polygon along a line |
 //! | [`voronoi`] | borders between groups of points |
 //! | [`overlay`] | intersection, difference, union |
+//! | [`overlap`] | areas that polygons share |
 //! | [`offset`] | insets of polygons and carriageways of lines |
 //! | [`box_grid`] | boxes that meet a box, for a set that does not change |
 //! | [`segment_grid`] | segments near a segment, for linework that does not change |
@@ -43,6 +44,7 @@ pub mod grid;
 pub mod mean_value;
 pub mod offset;
 pub mod oriented_box;
+pub mod overlap;
 pub mod overlay;
 mod plain;
 pub mod point_grid;
@@ -65,6 +67,7 @@ pub use crs::Crs;
 pub use enclosing_circle::Circle;
 pub use glam::DVec2 as Vec2;
 pub use grid::GridPoint;
+pub use mean_value::MeanValueMap;
 pub use oriented_box::OrientedBox;
 pub use point_grid::PointGrid;
 pub use point_index::PointIndex;

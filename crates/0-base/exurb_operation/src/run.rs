@@ -1,3 +1,4 @@
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -30,6 +31,7 @@ struct Shared {
     progress: AtomicU64,
     phase: Mutex<String>,
     warnings: Mutex<Vec<Warning>>,
+    tallies: Mutex<BTreeMap<String, u64>>,
 }
 
 impl Run {
@@ -98,6 +100,19 @@ impl Run {
         if !list.contains(&warning) {
             list.push(warning);
         }
+    }
+
+    /// Counts what was done, and why, for the result to tell: `what` is a few words in the plural.
+    pub fn tally(&self, what: &str, count: u64) {
+        if count > 0 {
+            let mut all = self.shared.tallies.lock().unwrap_or_else(PoisonError::into_inner);
+            *all.entry(what.to_owned()).or_default() += count;
+        }
+    }
+
+    /// What was counted so far, by name.
+    pub fn tallies(&self) -> BTreeMap<String, u64> {
+        self.shared.tallies.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     /// Takes the warnings noted so far.

@@ -38,4 +38,6 @@ pub mod time_warp;
 
 pub use attributes::{Attributes, Weights};
 pub use database::{Database, Entry, Match, Query};
-pub use outline::Outline;
+pub use outline::{Outline, SAMPLES};
+pub use shape_context::{Contexts, outer_radius_m};
+pub use time_warp::Warp;

@@ -76,32 +76,31 @@ impl Search<'_> {
         let (rows, columns) = (self.costs.rows(), self.costs.columns());
         let end = start + columns as u32 - 1;
         let span = |i: usize| (band.low[i].max(start) as usize, band.high[i].min(end) as usize);
-        // Sums by row; a column left of a row's span counts as infinite.
+        // Sums by row; columns outside a row's span count as infinite.
         let mut offsets = Vec::with_capacity(rows);
         self.table.clear();
+        let (mut above, mut above_low) = (0..0, 0);
         for i in 0..rows {
             let (low, high) = span(i);
-            offsets.push(self.table.len());
-            let row = self.costs.row(i);
-            let (above_low, above_high) = if i > 0 { span(i - 1) } else { (1, 0) };
-            let above = |table: &[f32], j: usize| {
-                if i > 0 && (above_low..=above_high).contains(&j) {
-                    table[offsets[i - 1] + j - above_low]
-                } else {
-                    f32::INFINITY
-                }
+            let offset = self.table.len();
+            offsets.push(offset);
+            self.table.resize(offset + high + 1 - low, f32::INFINITY);
+            let (before_rows, row) = self.table.split_at_mut(offset);
+            let above_sums = &before_rows[above];
+            let sum_above = |j: usize| {
+                above_sums.get(j.wrapping_sub(above_low)).copied().unwrap_or(f32::INFINITY)
             };
+            let mut diagonal = sum_above(low.wrapping_sub(1));
             let mut before = f32::INFINITY;
-            let mut diagonal = if low > 0 { above(&self.table, low - 1) } else { f32::INFINITY };
-            for j in low..=high {
-                let up = above(&self.table, j);
-                let least = before.min(diagonal).min(up);
-                let least = if i == 0 && j == start as usize { 0.0 } else { least };
-                let column = if j < columns { j } else { j - columns };
-                before = least + row[column];
-                diagonal = up;
-                self.table.push(before);
+            let costs = self.costs.row(i);
+            let start = if i == 0 { start as usize } else { usize::MAX };
+            for (j, sum) in (low..).zip(row.iter_mut()) {
+                let up = sum_above(j);
+                let least = if j == start { 0.0 } else { diagonal.min(up).min(before) };
+                before = least + costs[if j < columns { j } else { j - columns }];
+                (*sum, diagonal) = (before, up);
             }
+            (above, above_low) = (offset..self.table.len(), low);
         }
         let sum = self.table[self.table.len() - 1];
         let path = self.traced(&offsets, &span, start, end);

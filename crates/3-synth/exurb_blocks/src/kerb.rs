@@ -1,6 +1,6 @@
 //! The outline of a block as a list of rings, and the place on it nearest to a point.
 
-use exurb_geom::{GridPoint, Polygon, SegmentGrid, Vec2, polyline};
+use exurb_geom::{GridPoint, Polygon, SegmentGrid, Vec2, grid, polyline};
 
 use crate::ring::Ring;
 
@@ -68,6 +68,42 @@ impl Kerb {
         }
         let all = 0..self.starts.len() as u32;
         self.best(p, all).unwrap_or((0, Place { at_m: 0.0, distance_m: 0.0, direction: Vec2::X }))
+    }
+
+    /// Is `p` in the block whose kerb this is? Even-odd, over the rings.
+    pub fn contains(&self, p: Vec2) -> bool {
+        self.rings.iter().fold(false, |inside, ring| inside ^ ring.winds_around(p))
+    }
+
+    /// Distance of an outline to the kerb of `block` in metres, negative where it reaches over it.
+    pub fn clearance_m(&self, outline: &Polygon, block: &Polygon) -> f64 {
+        if self.crosses(outline) {
+            return -1.0;
+        }
+        let mut least = f64::INFINITY;
+        for p in outline.exterior() {
+            let distance_m = self.nearest(p.to_m()).1.distance_m;
+            least = least.min(if block.contains(*p) { distance_m } else { -distance_m });
+        }
+        // Corners of the kerb that come near a long wall, or stand in the building.
+        let bounds = outline.bounds().grown(least.max(0.0));
+        for corner in block.rings().flatten().filter(|p| bounds.contains(p.to_m())) {
+            let distance_m = outline.boundary_distance_m(corner.to_m());
+            least = least.min(if outline.contains(*corner) { -distance_m } else { distance_m });
+        }
+        least
+    }
+
+    /// Does the kerb cross the outline?
+    fn crosses(&self, outline: &Polygon) -> bool {
+        let mut near = Vec::new();
+        outline.segments().any(|(a, b)| {
+            self.grid.near(a, b, 0, &mut near);
+            near.iter().any(|id| {
+                let (c, d) = self.grid.segment(*id);
+                grid::cross_properly(a, b, c, d)
+            })
+        })
     }
 
     fn best(&self, p: Vec2, segments: impl Iterator<Item = u32>) -> Option<(usize, Place)> {

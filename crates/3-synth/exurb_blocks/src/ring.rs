@@ -64,6 +64,16 @@ impl Ring {
         self.points[i].lerp(self.points[i + 1], t)
     }
 
+    /// Does it go around `p`?
+    pub fn winds_around(&self, p: Vec2) -> bool {
+        self.points.windows(2).fold(false, |inside, w| {
+            let (a, b) = (w[0], w[1]);
+            let crossed =
+                (a.y > p.y) != (b.y > p.y) && ((b - a).perp_dot(p - a) > 0.0) == (b.y > a.y);
+            inside ^ crossed
+        })
+    }
+
     /// The sides between corners; one from 0 around when there is no corner.
     pub fn sides(&self) -> Vec<Side> {
         let corners = self.corners();
@@ -92,7 +102,7 @@ impl Ring {
 
     /// Corners as position and signed turn, in order along the ring. Of vertices near each other the
     /// sharpest is the corner.
-    fn corners(&self) -> Vec<(f64, f64)> {
+    pub fn corners(&self) -> Vec<(f64, f64)> {
         let length = self.length_m();
         let reach = REACH_M.min(length / 8.0);
         let turn_at = |at: f64| {
@@ -119,6 +129,53 @@ impl Ring {
         }
         corners.sort_by(|a, b| a.0.total_cmp(&b.0));
         corners
+    }
+
+    /// Position of vertex `i` in metres.
+    pub fn vertex_m(&self, i: usize) -> f64 {
+        self.starts_m[i]
+    }
+
+    /// Positions of the vertices that tell the line to within `tolerance_m`, ascending.
+    pub fn outline_m(&self, tolerance_m: f64) -> Vec<f64> {
+        let n = self.points.len();
+        let far = (0..n).max_by(|i, j| {
+            let from_first = |k: usize| self.points[k].distance(self.points[0]);
+            from_first(*i).total_cmp(&from_first(*j))
+        });
+        let far = far.unwrap_or(0);
+        let mut keep: Vec<Vec2> = polyline::simplify(&self.points[..=far], tolerance_m);
+        keep.extend(polyline::simplify(&self.points[far..], tolerance_m));
+        let mut out = Vec::with_capacity(keep.len());
+        let mut kept = keep.iter().peekable();
+        for (p, at) in self.points[..n - 1].iter().zip(&self.starts_m) {
+            if kept.peek() == Some(&p) {
+                out.push(*at);
+                while kept.peek() == Some(&p) {
+                    kept.next();
+                }
+            }
+        }
+        out
+    }
+
+    /// The line from `from_m` on to `to_m`, which lies ahead by at most once around.
+    pub fn part(&self, from_m: f64, to_m: f64) -> Vec<Vec2> {
+        let length = self.length_m();
+        let mut out = vec![self.point_at(from_m)];
+        let n = self.starts_m.len() - 1;
+        let turn = (from_m / length).floor();
+        let first = self.starts_m[..n].partition_point(|s| *s + turn * length <= from_m);
+        for k in first..first + n {
+            let at = self.starts_m[k % n] + (turn + (k / n) as f64) * length;
+            if at >= to_m {
+                break;
+            }
+            out.push(self.points[k % n]);
+        }
+        out.push(self.point_at(to_m));
+        out.dedup();
+        out
     }
 
     /// The segment that holds `at_m`, which lies in `0..length`.

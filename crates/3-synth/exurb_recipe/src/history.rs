@@ -5,7 +5,9 @@ use std::time::Instant;
 
 use exurb_operation::Run;
 
-use crate::{Error, Inputs, Recipe, Registry, Source, Step, Target, Within, open, read_example};
+use crate::{
+    Error, Inputs, Recipe, Registry, Source, Step, Target, Within, attached, open, read_example,
+};
 
 impl Recipe {
     /// The recipe as it goes into a city's metadata: files by their names alone, no threads and no
@@ -23,6 +25,9 @@ impl Recipe {
                 *file = file_name(file);
             }
             step.fixed = step.fixed.as_deref().map(file_name);
+            if let Ok(operation) = registry.find(&step.op) {
+                attached::by_name(&mut step.params, &operation.schema());
+            }
         }
         recipe.normalise(registry);
         recipe

@@ -25,6 +25,7 @@
 //! assert!(wrong.to_string().starts_with("recipe.toml, line 2: unknown field `sead`"));
 //! ```
 
+mod attached;
 pub mod builtin;
 mod document;
 mod error;

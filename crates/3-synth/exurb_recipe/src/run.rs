@@ -1,5 +1,6 @@
 //! Running a recipe: read, then step by step.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
@@ -8,7 +9,9 @@ use exurb_city::{City, Imported, completeness};
 use exurb_operation::{Example, Run, Scope};
 use serde_json::Value;
 
-use crate::{Error, Recipe, Registry, Source, Step, Target, Within, fixed, open, registry, target};
+use crate::{
+    Error, Recipe, Registry, Source, Step, Target, Within, attached, fixed, open, registry, target,
+};
 
 /// What a recipe reads before it works.
 #[derive(Clone, Debug)]
@@ -28,6 +31,8 @@ pub struct Made {
     pub city: City,
     /// Seconds taken by each kind of work.
     pub seconds: Seconds,
+    /// What the steps did and why, counted.
+    pub tallies: BTreeMap<String, u64>,
 }
 
 /// How long each kind of work took, in seconds.
@@ -110,7 +115,9 @@ impl Recipe {
             }
             run.phase(&step.op);
             let run = run.seeded(step.seed.unwrap_or(self.seed));
-            let params = Value::Object(step.params.clone());
+            let read =
+                attached::read(&step.params, &operation.schema(), &city.frame, folder, &run)?;
+            let params = Value::Object(read);
             let outcome = operation.run(&city, &scope, &chosen, params, &run)?;
             seconds.learn += outcome.seconds.learn;
             seconds.synthesise += outcome.seconds.synthesise;
@@ -121,7 +128,7 @@ impl Recipe {
         city.metadata.buildings_complete =
             completeness::is_complete(&city.streets, &city.buildings);
         city.metadata.recipe = self.portable(registry).after(&history, registry).print()?;
-        Ok(Made { city, seconds })
+        Ok(Made { city, seconds, tallies: run.tallies() })
     }
 
     /// The examples a step learns from.

@@ -1,5 +1,6 @@
 //! What came out of a command: the JSON of the contract, or a few lines for people.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use exurb_city::City;
@@ -16,6 +17,7 @@ pub fn report(
     city: &City,
     example: Option<&City>,
     seconds: Seconds,
+    tallies: &BTreeMap<String, u64>,
     files: &[&PathBuf],
     options: &RunOptions,
 ) -> Result<(), Problem> {
@@ -27,11 +29,15 @@ pub fn report(
         let mut value = json!(info);
         if let Some(object) = value.as_object_mut() {
             object.insert("seconds".into(), json!(seconds));
+            object.insert("tallies".into(), json!(tallies));
         }
         return report::json(&value);
     }
     let Seconds { read, learn, synthesise, write } = seconds;
     let mut text = brief(&info);
+    for (what, count) in tallies {
+        text.push_str(&format!("{count:>8}        {what}\n"));
+    }
     text.push_str(&format!(
         "time            {:.2} s: read {read:.2}, learn {learn:.2}, synthesise {synthesise:.2}, \
          write {write:.2}\n",

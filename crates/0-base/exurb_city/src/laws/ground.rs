@@ -1,6 +1,6 @@
 //! Laws of blocks, parcels and buildings.
 
-use exurb_geom::{BoxGrid, GridPoint, Polygon, grid, overlay};
+use exurb_geom::{BoxGrid, GridPoint, Polygon, grid, overlap};
 use rayon::prelude::*;
 
 use super::{Breach, LawReport, pieces::Pieces};
@@ -114,7 +114,7 @@ fn overlapping(
             near.iter()
                 .map(|j| *j as usize)
                 .filter(|j| *j > i)
-                .map(|j| (i, j, shared_m2(polygons[i].1, polygons[j].1)))
+                .map(|j| (i, j, overlap::shared_m2(polygons[i].1, polygons[j].1, SLACK_M2)))
                 .filter(|(.., area_m2)| *area_m2 > SLACK_M2)
                 .collect()
         })
@@ -134,30 +134,6 @@ fn overlapping(
             Some(breach(law, layer, id, polygon, message))
         })
         .collect()
-}
-
-/// Area that two polygons share, in m²; 0 where a quick look tells that it is below the slack.
-fn shared_m2(a: &Polygon, b: &Polygon) -> f64 {
-    let (p, q) = (a.bounds(), b.bounds());
-    let size = (p.max.min(q.max) - p.min.max(q.min)).max(exurb_geom::Vec2::ZERO);
-    if size.x * size.y <= SLACK_M2 || apart(a, b) {
-        return 0.0;
-    }
-    overlay::intersection(a, b).iter().map(Polygon::area_m2).sum()
-}
-
-/// Surely no common inside: no sides cross, and no vertex or middle of a side of one lies inside
-/// the other. Neighbours with a common wall are told apart so.
-fn apart(a: &Polygon, b: &Polygon) -> bool {
-    let crossing =
-        a.segments().any(|(p, q)| b.segments().any(|(r, s)| grid::cross_properly(p, q, r, s)));
-    !crossing && !reaches_into(a, b) && !reaches_into(b, a) && a.exterior() != b.exterior()
-}
-
-fn reaches_into(a: &Polygon, b: &Polygon) -> bool {
-    let inside =
-        |p: GridPoint| b.contains(p) && !b.segments().any(|(r, s)| grid::on_segment(r, s, p));
-    a.segments().any(|(p, q)| inside(p) || inside(GridPoint::round((p.to_m() + q.to_m()) / 2.0)))
 }
 
 /// Does a street on the ground run through the polygon? Its index.
@@ -208,35 +184,17 @@ impl<'a> Homes<'a> {
     /// stands on. `None` for a building in no block, as at the edge of a map.
     fn outside_m2(&self, block: u32, polygon: &Polygon) -> Option<(u32, f64)> {
         if let Some(block) = self.named(block) {
-            return Some((block.id, outside_m2(polygon, &block.polygon)));
+            return Some((block.id, overlap::outside_m2(polygon, &block.polygon)));
         }
         let mut near = Vec::new();
         self.boxes.meeting_polygon(polygon, &mut near);
         let area_m2 = polygon.area_m2();
         near.iter()
             .map(|i| &self.blocks[*i as usize])
-            .map(|block| (block.id, outside_m2(polygon, &block.polygon)))
+            .map(|block| (block.id, overlap::outside_m2(polygon, &block.polygon)))
             .filter(|(_, outside)| *outside < area_m2 - SLACK_M2)
             .min_by(|a, b| a.1.total_cmp(&b.1))
     }
-}
-
-/// Area of `polygon` outside `block`, in m².
-fn outside_m2(polygon: &Polygon, block: &Polygon) -> f64 {
-    if !polygon.bounds().intersects(block.bounds()) {
-        return polygon.area_m2();
-    }
-    // Sides of the block that could pass through the polygon.
-    let bounds = polygon.bounds();
-    let crossed = block.segments().any(|(r, s)| {
-        let side = exurb_geom::Bounds { min: r.to_m().min(s.to_m()), max: r.to_m().max(s.to_m()) };
-        side.intersects(bounds) && polygon.segments().any(|(p, q)| grid::intersects(p, q, r, s))
-    });
-    // No side meets the outline: all in, all out, or around a hole of the block.
-    if !crossed && block.interiors().iter().all(|hole| !polygon.contains(hole[0])) {
-        return if block.contains(polygon.exterior()[0]) { 0.0 } else { polygon.area_m2() };
-    }
-    overlay::difference(polygon, [block]).iter().map(Polygon::area_m2).sum()
 }
 
 /// Worst deviation of a block's coverage by its parcels from 1, over blocks that have parcels, and
@@ -257,7 +215,9 @@ fn tiling(city: &City) -> (Option<f64>, Vec<Breach>) {
             let covered_m2: f64 = group.iter().map(|(_, p)| p.area_m2()).sum();
             let stray_m2: f64 = group
                 .iter()
-                .map(|(_, p)| ground.iter().map(|g| outside_m2(p, g)).fold(p.area_m2(), f64::min))
+                .map(|(_, p)| {
+                    ground.iter().map(|g| overlap::outside_m2(p, g)).fold(p.area_m2(), f64::min)
+                })
                 .sum();
             let gap_m2 = (ground_m2 - (covered_m2 - stray_m2)).abs().max(stray_m2);
             let deviation = if ground_m2 > 0.0 { gap_m2 / ground_m2 } else { 1.0 };

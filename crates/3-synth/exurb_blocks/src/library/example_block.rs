@@ -39,9 +39,9 @@ pub struct ExampleBlock {
 /// Blocks under this area teach nothing, in m².
 const LEAST_BLOCK_M2: f64 = 100.0;
 /// From this share of open land on, a block with next to no building is open.
-const OPEN_SHARE: f64 = 0.5;
+pub const OPEN_SHARE: f64 = 0.5;
 /// Coverage up to which a block of open land stays open: a park may hold a pavilion.
-const OPEN_COVERAGE: f64 = 0.06;
+pub const OPEN_COVERAGE: f64 = 0.06;
 /// Blocks covered more than this are built on all sides: one house may line several.
 const SPARSE_COVERAGE: f64 = 0.12;
 /// Buildings under this share of the block's usual footprint are garages and sheds.

@@ -134,7 +134,7 @@ impl Front {
 }
 
 /// The direction that most of an outline runs in, of the four a right angle apart, as an angle.
-fn main_direction(edges: impl Iterator<Item = (Vec2, Vec2)>) -> f64 {
+pub fn main_direction(edges: impl Iterator<Item = (Vec2, Vec2)>) -> f64 {
     let mut sum = Vec2::ZERO;
     for (a, b) in edges {
         let length = a.distance(b);

@@ -19,7 +19,8 @@ mod open_land;
 pub use block_features::{Features, Surroundings};
 pub use building_sample::BuildingSample;
 pub use donor::Donors;
-pub use example_block::{ExampleBlock, median};
+pub use example_block::{ExampleBlock, OPEN_COVERAGE, OPEN_SHARE, median};
+pub(crate) use fronts::{are_near, main_direction};
 pub use open_land::{OpenLand, OpenNearby};
 
 use exurb_city::{City, block};

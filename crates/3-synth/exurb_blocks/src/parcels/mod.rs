@@ -16,29 +16,37 @@
 //! own random stream by place.
 
 mod axis_voronoi;
+mod box_split;
+mod cadastre;
 mod error;
 mod learn;
 mod owners;
 mod params;
+mod skeleton;
 mod stretches;
 mod synthesize;
 #[cfg(test)]
 mod tests;
 mod tiling;
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use exurb_city::{Area, Block, BlockClass, City, Edit, Origin, Parcel, Provenance, block};
+use exurb_city::{
+    Area, Block, BlockClass, Building, City, Edit, Feature, Origin, Parcel, Provenance, block,
+};
 use exurb_geom::{GridPoint, offset};
 use exurb_operation::{Card, Example, Failure, Operation, Run, Scope, rng};
 use rayon::prelude::*;
 
+pub use cadastre::{Holding, cadastre};
 pub use error::Error;
 pub use learn::Learned;
-pub use params::Params;
+pub use params::{Method, Params};
 pub(crate) use stretches::flanks;
 pub use synthesize::{Input, Lot, synthesize};
 
+use crate::filling::{self, Filling};
 use crate::library::{Donors, OpenLand};
 use crate::scoped::Scoped;
 
@@ -46,7 +54,7 @@ use crate::scoped::Scoped;
 pub struct Parcels;
 
 /// Parcels with less frontage have no street access, in metres.
-const ACCESS_M: f64 = 3.0;
+pub(crate) const ACCESS_M: f64 = 3.0;
 
 impl Operation for Parcels {
     const CARD: Card = Card {
@@ -59,7 +67,10 @@ impl Operation for Parcels {
     type Params = Params;
     type Learned = Learned;
 
-    fn learn(examples: &[Example], _: &Params, run: &Run) -> Result<Learned, Failure> {
+    fn learn(examples: &[Example], params: &Params, run: &Run) -> Result<Learned, Failure> {
+        if params.method == Method::Footprints {
+            return Ok(Learned::default());
+        }
         learn::learn(examples, run)
     }
 
@@ -85,6 +96,9 @@ impl Operation for Parcels {
             return Err(failed(Error::NoBlocks));
         }
         let scoped = Scoped::of(city, &blocks, scope);
+        if params.method == Method::Footprints {
+            return Ok(around_buildings(city, blocks, &scoped, params));
+        }
         let open = OpenLand::of(city);
         let donors = learned.donors(&blocks, run.seed());
         let cut: Vec<Result<Option<CutBlock>, Failure>> = blocks
@@ -98,6 +112,33 @@ impl Operation for Parcels {
         let cut: Vec<Option<CutBlock>> = cut.into_iter().collect::<Result<_, _>>()?;
         Ok(written(city, blocks, cut, &scoped))
     }
+}
+
+/// Parcels around the buildings that stand; everything else stays.
+fn around_buildings(city: &City, blocks: Vec<Block>, scoped: &Scoped, params: &Params) -> Edit {
+    let mut buildings: BTreeMap<u32, Vec<Building>> = BTreeMap::new();
+    for building in city.buildings.iter() {
+        buildings.entry(building.block).or_default().push(building.clone());
+    }
+    let mut things: BTreeMap<u32, Vec<Feature>> = BTreeMap::new();
+    for thing in city.features.iter() {
+        things.entry(thing.block).or_default().push(thing.clone());
+    }
+    let of = |block: &Block| Filling {
+        buildings: buildings.get(&block.id).cloned().unwrap_or_default(),
+        things: things.get(&block.id).cloned().unwrap_or_default(),
+        land_use: block.land_use.clone(),
+        provenance: block.provenance.clone(),
+        ..Filling::default()
+    };
+    let fillings: Vec<Option<Filling>> = blocks
+        .par_iter()
+        .map(|block| {
+            let wanted = scoped.holds(block.id) && block.class == BlockClass::Block;
+            wanted.then(|| of(block).with_cadastre(block, params.pavement))
+        })
+        .collect();
+    filling::written(city, blocks, fillings)
 }
 
 /// What becomes of one block.

@@ -4,10 +4,12 @@ use exurb_geom::{Polygon, Vec2, offset, polyline, voronoi, voronoi::Site};
 use exurb_operation::Rng;
 use rand::RngExt;
 
+use super::box_split::{self, Wanted};
 use super::owners::Owners;
+use super::params::Method;
 use super::stretches::{Stretch, stretches};
 use super::tiling::Tiling;
-use super::{Params, axis_voronoi};
+use super::{Params, axis_voronoi, skeleton};
 use crate::ring::Ring;
 
 /// What is known of the lots of one block.
@@ -63,6 +65,15 @@ pub fn synthesize(ground: &Polygon, input: &Input, params: &Params, rng: &mut Rn
     if count < 2 && !partly {
         return whole();
     }
+    match params.method {
+        Method::Box if !partly => return by_boxes(ground, input, params, rng),
+        Method::Skeleton if !partly => {
+            if let Some(lots) = by_skeleton(ground, input, params, &mut next_m) {
+                return lots;
+            }
+        }
+        _ => {}
+    }
     let mut lines = Vec::new();
     let mut court: Vec<Polygon> = Vec::new();
     let mut resting: Vec<u32> = Vec::new();
@@ -104,8 +115,12 @@ pub fn synthesize(ground: &Polygon, input: &Input, params: &Params, rng: &mut Rn
         let label = owners.at(p);
         if resting.binary_search(&label).is_ok() { REST } else { label }
     };
-    let mut tiling = Tiling::of(ground, &lines, owner);
-    let least_m2 = params.min_area.min(mean_m * depth_m * 0.25);
+    lots(Tiling::of(ground, &lines, owner), mean_m * depth_m, params)
+}
+
+/// The pieces of a tiling as lots; those without frontage, and slivers, join a neighbour.
+fn lots(mut tiling: Tiling, usual_m2: f64, params: &Params) -> Vec<Lot> {
+    let least_m2 = params.min_area.min(usual_m2 * 0.25);
     tiling.join(|piece| piece.frontage_m < params.min_frontage || piece.area_m2 < least_m2);
     tiling
         .polygons()
@@ -116,6 +131,50 @@ pub fn synthesize(ground: &Polygon, input: &Input, params: &Params, rng: &mut Rn
             is_rest: piece.owner == REST,
         })
         .collect()
+}
+
+/// Vanegas' box method, with sizes learned from the example's lots.
+fn by_boxes(ground: &Polygon, input: &Input, params: &Params, rng: &mut Rng) -> Vec<Lot> {
+    let mut widths: Vec<f64> =
+        input.frontages_m.iter().map(|w| w * params.frontage_factor).collect();
+    widths.sort_by(f64::total_cmp);
+    let depth_m = input.depth_m * params.depth_factor;
+    let at = |share: f64| widths[((widths.len() - 1) as f64 * share).round() as usize];
+    let width_m = ((at(0.1) * 0.7).max(params.min_frontage), at(0.9) * 1.3);
+    let usual_m2 = mean(&widths) * depth_m;
+    let wanted = Wanted {
+        // Halving brings areas between half of the most and the most.
+        area_m2: (usual_m2 * 0.35, usual_m2 * 1.4),
+        width_m,
+        irregularity: params.irregularity,
+        access: params.access,
+    };
+    let lines = box_split::cuts(ground, &wanted, rng);
+    let next = std::cell::Cell::new(0);
+    let owner = |_| {
+        next.set(next.get() + 1);
+        next.get()
+    };
+    lots(Tiling::of(ground, &lines, owner), usual_m2, params)
+}
+
+/// Vanegas' skeleton method; `None` where the block has no skeleton.
+fn by_skeleton(
+    ground: &Polygon,
+    input: &Input,
+    params: &Params,
+    next_m: impl FnMut() -> f64,
+) -> Option<Vec<Lot>> {
+    let depth_m = input.depth_m * params.depth_factor;
+    let has_court = ground.mean_width_m() * 2.0 > COURT_DEPTHS * depth_m;
+    let reach_m = if has_court { depth_m * ROW_DEPTHS } else { f64::MAX.sqrt() };
+    let strips = skeleton::strips(ground, reach_m.min(ground.perimeter_m()), next_m)?;
+    let mut lines = strips.lines.clone();
+    if has_court {
+        lines.extend(offset::inset(ground, reach_m).iter().flat_map(outlines));
+    }
+    let tiling = Tiling::of(ground, &lines, |p| strips.owner(p));
+    Some(lots(tiling, mean(&input.frontages_m) * params.frontage_factor * depth_m, params))
 }
 
 /// The example's frontages in their order, from a place drawn by `start`, over and over.

@@ -81,7 +81,14 @@ pub fn run(matches: &ArgMatches, registry: &Registry) -> Result<(), Problem> {
         Ok((made, example))
     })?;
     made_folder.keep();
-    summary::report(&made.city, example.as_deref(), made.seconds, &[], &options.run)?;
+    summary::report(
+        &made.city,
+        example.as_deref(),
+        made.seconds,
+        &made.tallies,
+        &[],
+        &options.run,
+    )?;
     if !options.run.json && !options.run.quiet {
         report::result(&next_steps(folder))?;
     }

@@ -49,7 +49,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Problem> {
         Ok((city, Seconds { read, write, ..Seconds::default() }))
     })?;
     let files: &[&PathBuf] = if options.dry.dry_run { &[] } else { &[&output] };
-    summary::report(&city, None, seconds, files, &options.run)
+    summary::report(&city, None, seconds, &Default::default(), files, &options.run)
 }
 
 fn read(options: &Options, run: &Run) -> Result<City, Problem> {

@@ -13,8 +13,7 @@ use crate::problem::Problem;
 use crate::{flags, job, summary};
 
 /// What `auto` does in a stage.
-const AUTO: [(&str, &[&str]); 2] =
-    [("blocks", &["blocks parcels", "blocks footprints"]), ("buildings", &["buildings extrude"])];
+const AUTO: [(&str, &[&str]); 1] = [("buildings", &["buildings extrude"])];
 
 /// The file to write; a dry run writes none.
 #[derive(Args)]
@@ -93,7 +92,8 @@ impl Method<'_> {
 
     /// The operation whose parameters are flags.
     fn single(&self) -> Option<&dyn AnyOperation> {
-        if self.name == "auto" { None } else { self.operations.first().copied() }
+        let is_list = self.operations.first().is_none_or(|o| o.card().method != self.name);
+        if is_list { None } else { self.operations.first().copied() }
     }
 
     fn command(&self) -> Command {
@@ -232,7 +232,7 @@ pub fn run(stage: &str, matches: &ArgMatches, registry: &Registry) -> Result<(),
         Ok((made, example))
     })?;
     let files: Vec<&PathBuf> = exports.iter().map(|e| &e.file).collect();
-    summary::report(&made.city, example.as_deref(), made.seconds, &files, &options)
+    summary::report(&made.city, example.as_deref(), made.seconds, &made.tallies, &files, &options)
 }
 
 /// Where no example was named, a city's own ones are looked for beside it. A city that was imported

@@ -74,5 +74,5 @@ pub fn perform(
     folder_made.keep();
     let files: Vec<PathBuf> = recipe.exports.iter().map(|e| into.join(&e.file)).collect();
     let files: Vec<&PathBuf> = files.iter().collect();
-    summary::report(&made.city, example.as_deref(), made.seconds, &files, options)
+    summary::report(&made.city, example.as_deref(), made.seconds, &made.tallies, &files, options)
 }

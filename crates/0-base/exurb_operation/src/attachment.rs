@@ -1,0 +1,49 @@
+use exurb_geom::{GridPoint, Polygon};
+
+/// A polygon that a parameter takes from a file. Recipes and commands name the file; whoever runs the
+/// operation reads it first, since operations open no files.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(untagged)]
+pub enum PolygonFile {
+    /// The file's name.
+    File(String),
+    /// What was read: rings in metres in the city's frame, the outer one first.
+    Read {
+        /// The rings, open or closed.
+        polygon: Vec<Vec<[f64; 2]>>,
+    },
+}
+
+impl Default for PolygonFile {
+    fn default() -> Self {
+        Self::File(String::new())
+    }
+}
+
+impl schemars::JsonSchema for PolygonFile {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "PolygonFile".into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!({ "type": "string", "x-file": "polygon" })
+    }
+}
+
+impl PolygonFile {
+    /// Was none given?
+    pub fn is_none(&self) -> bool {
+        matches!(self, Self::File(name) if name.is_empty())
+    }
+
+    /// The polygon; `None` where none was read or it has no area.
+    pub fn polygon(&self) -> Option<Polygon> {
+        let Self::Read { polygon } = self else { return None };
+        let ring = |r: &Vec<[f64; 2]>| r.iter().map(|p| GridPoint::m(p[0], p[1])).collect();
+        Polygon::new(ring(polygon.first()?), polygon[1..].iter().map(ring).collect())
+    }
+}

@@ -1,0 +1,130 @@
+//! One example block tried in one block.
+
+use exurb_city::Block;
+use exurb_geom::{GridPoint, Polygon, Rigid};
+use exurb_match::{Match, Outline, align};
+
+use super::descriptor::Descriptor;
+use super::{Choosing, Learned, Ways};
+use crate::database::Layout;
+use crate::kerb::Kerb;
+use crate::lay::{Laid, Spacing, lay};
+use crate::library::OpenNearby;
+use crate::refine::Ground;
+use crate::retarget::{Correspondence, source_of, wishes};
+use crate::ring::Ring;
+
+/// How a layout came into a block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Way {
+    /// Moved as a whole.
+    Transferred,
+    /// Laid out anew.
+    Retargeted,
+}
+
+/// A layout in a block.
+#[derive(Clone, Debug)]
+pub struct Candidate {
+    /// Index of the layout.
+    pub entry: u32,
+    /// How unlike the blocks are.
+    pub cost: f64,
+    /// How it was laid.
+    pub way: Way,
+    /// What came of it.
+    pub laid: Laid,
+    /// Its looks there.
+    pub looks: Descriptor,
+    /// Built area by what the layout would cover of the block, at most 1.
+    pub kept: f64,
+    /// Does the block lie in the example as it is?
+    pub is_same: bool,
+}
+
+/// A block as layouts are tried in it.
+pub struct Site<'a> {
+    /// The block.
+    pub block: &'a Block,
+    /// Its outline without small notches.
+    pub ring: Vec<GridPoint>,
+    /// The same in samples.
+    pub outline: Outline,
+    /// Its kerb.
+    pub kerb: Kerb,
+    /// What reaches into it and stays.
+    pub standing: Vec<Polygon>,
+}
+
+impl<'a> Site<'a> {
+    /// The site of a block with what stays standing in it.
+    pub fn of(block: &'a Block, standing: Vec<Polygon>) -> Self {
+        let ring = crate::outline::plain_outline(&block.polygon);
+        let outline = Outline::of(&ring);
+        Self { block, ring, outline, kerb: Kerb::of(&block.polygon), standing }
+    }
+}
+
+/// Outlines that lie this near to each other, root mean square, are the same, in metres.
+const SAME_M: f64 = 0.002;
+
+/// Tries the layout of a match.
+pub fn tried(
+    site: &Site<'_>,
+    found: &Match,
+    learned: &Learned,
+    choosing: &Choosing,
+    ways: &Ways,
+    open: &OpenNearby<'_>,
+) -> Candidate {
+    let layout = &learned.database.layouts[found.entry as usize];
+    let outline = learned.database.outline(found.entry);
+    let motion = align::refine(found.motion, outline, &site.ring);
+    let deviation_m = align::deviation_m(&motion, outline, &site.ring);
+    let is_same = deviation_m < SAME_M && found.shape_cost < 0.05;
+    let ground = Ground { block: &site.block.polygon, kerb: &site.kerb, standing: &site.standing };
+    let spacing = Spacing { pavement_m: choosing.pavement, tolerance: choosing.tolerance };
+    let transferred = || {
+        let (footprints, things) = layout.wished(motion.into());
+        lay(layout, &footprints, &things, &ground, open, spacing)
+    };
+    let anew = || retargeted(site, found, layout, ways, &ground, open, spacing);
+    let kept = |laid: &Laid| {
+        let wanted_m2 = layout.coverage * site.block.polygon.area_m2();
+        if wanted_m2 > 0.0 { (laid.built_m2() / wanted_m2).min(1.0) } else { 1.0 }
+    };
+    let as_whole = !ways.retarget
+        || (ways.transfer && (is_same || deviation_m <= ways.deviation_m || layout.open.is_some()))
+        || layout.footprints.is_empty();
+    let (way, laid) =
+        if as_whole { (Way::Transferred, transferred()) } else { (Way::Retargeted, anew()) };
+    let footprints = laid.buildings.iter().filter(|b| !b.is_part).map(|b| &b.polygon);
+    let looks = Descriptor::of(&site.block.polygon, &site.kerb, footprints);
+    let kept = kept(&laid);
+    Candidate { entry: found.entry, cost: found.cost, way, laid, looks, kept, is_same }
+}
+
+fn retargeted(
+    site: &Site<'_>,
+    found: &Match,
+    layout: &Layout,
+    ways: &Ways,
+    ground: &Ground<'_>,
+    open: &OpenNearby<'_>,
+    spacing: Spacing,
+) -> Laid {
+    let mirror = Rigid { mirrored: true, ..Rigid::IDENTITY };
+    let mirrored;
+    let layout = if found.motion.mirrored {
+        mirrored = layout.moved(&mirror);
+        &mirrored
+    } else {
+        layout
+    };
+    let source = source_of(layout, &ways.settings);
+    let link = Correspondence::by_warp(&found.warp, source.ring(), &Ring::of(&site.ring));
+    let placed = source.retarget(ground.block, &site.ring, &link, &ways.settings);
+    let footprints = wishes(layout, &placed);
+    let things = crate::retarget::things(layout, &source, &placed, ground.block, &site.ring, &link);
+    lay(layout, &footprints, &things, ground, open, spacing)
+}

@@ -1,0 +1,351 @@
+//! Which example block fills which block: candidates by shape, tried out, and chosen together.
+//!
+//! Steps: 1 blocks on open land stay open; a block that lies in an example as it is takes its own layout;
+//! 2 parks, schools and shops are drawn ([`kinds`]); 3 density and height follow a smooth field
+//! ([`field`]); 4 every block asks the database for like blocks and tries the best out ([`candidate`]);
+//! 5 blocks choose together, so that neighbours look alike as the example's do ([`joint`],
+//! [`descriptor`]) and what is built adds up to the field.
+
+mod candidate;
+pub mod descriptor;
+pub mod field;
+pub mod joint;
+pub mod kinds;
+mod learned;
+mod options;
+
+use exurb_city::{Block, City};
+use exurb_geom::{BoxGrid, GridPoint, Polygon, overlap, trig};
+use exurb_match::{Attributes, Match, Query};
+use exurb_operation::{Failure, Rng, Run, rng};
+use rand::RngExt;
+use rayon::prelude::*;
+
+pub use candidate::{Candidate, Site, Way};
+pub use learned::Learned;
+pub use options::Choosing;
+
+use crate::library::{OpenLand, Surroundings};
+use crate::neighbours::{MainStreets, neighbours};
+use crate::retarget::Settings;
+use field::Place;
+use kinds::{Kind, Situation};
+
+/// Ways a layout may be laid.
+#[derive(Clone, Debug)]
+pub struct Ways {
+    /// Moved as a whole.
+    pub transfer: bool,
+    /// Laid out anew.
+    pub retarget: bool,
+    /// Outlines that lie nearer than this, root mean square, are like enough to move a layout as a
+    /// whole, in metres.
+    pub deviation_m: f64,
+    /// How layouts are laid out anew.
+    pub settings: Settings,
+}
+
+/// What was chosen for a block.
+#[derive(Clone, Debug)]
+pub enum Choice {
+    /// It is not to be filled.
+    None,
+    /// It stays open land of this class.
+    Open(std::sync::Arc<str>),
+    /// Candidates, the chosen one first.
+    Filled(Vec<Candidate>),
+}
+
+/// From this share of given open land on, a block stays open.
+const GIVEN_OPEN_SHARE: f64 = 0.5;
+/// What a factor of e between wanted and reached coverage costs.
+const COVERAGE_COST: f64 = 0.15;
+/// What a layout that is lost altogether costs.
+const LOSS_COST: f64 = 0.3;
+/// What neighbours cost that look as different as any two blocks, at a coherence of 1.
+const PAIR_COST: f64 = 0.12;
+/// What two neighbours of one layout cost.
+const SAME_LAYOUT_COST: f64 = 0.06;
+/// Spread of the draw among the best.
+const PICK_SPREAD: f64 = 0.04;
+/// Rounds in which the coverage of all is brought to the field's.
+const LEVEL_ROUNDS: usize = 6;
+
+/// Chooses for every block that `wanted` names. The order of choices is that of `blocks`.
+pub fn choose(
+    city: &City,
+    blocks: &[Block],
+    wanted: &[bool],
+    learned: &Learned,
+    choosing: &Choosing,
+    ways: &Ways,
+    run: &Run,
+) -> Result<Vec<Choice>, Failure> {
+    let open = OpenLand::of(city);
+    let standing = Standing::of(city, blocks, wanted);
+    let site =
+        |i: usize| wanted[i].then(|| Site::of(&blocks[i], standing.within(&blocks[i].polygon)));
+    let mut sites: Vec<Option<Site<'_>>> = (0..blocks.len()).into_par_iter().map(site).collect();
+    run.check()?;
+    let same: Vec<Option<Match>> =
+        sites.par_iter().map(|site| site.as_ref().and_then(|s| learned.same(s))).collect();
+    // A block that lies in an example as it is takes after it, park or not.
+    let given = |(block, same): (&Block, &Option<Match>)| {
+        let share = if same.is_none() { open.share(&block.polygon) } else { None };
+        share.filter(|(_, s)| *s >= GIVEN_OPEN_SHARE).map(|(class, _)| class)
+    };
+    let given: Vec<Option<std::sync::Arc<str>>> = blocks.par_iter().zip(&same).map(given).collect();
+    for (site, given) in sites.iter_mut().zip(&given) {
+        if given.is_some() {
+            *site = None;
+        }
+    }
+    run.check()?;
+    let around = Around::of(city, blocks, wanted);
+    let kinds = around.kinds(&sites, &given, &same, learned, choosing, run);
+    let field = field::field(&around.places, &learned.samples, learned.spread.coherence);
+    let tried: Vec<Result<Vec<Candidate>, Failure>> = (0..blocks.len())
+        .into_par_iter()
+        .map(|i| {
+            run.check()?;
+            let Some(site) = &sites[i] else { return Ok(Vec::new()) };
+            let near = open.near(&site.block.polygon);
+            let found = match &same[i] {
+                Some(same) => vec![same.clone()],
+                None => asked(
+                    site,
+                    &kinds[i],
+                    (field.coverage[i], field.height_m[i]),
+                    learned,
+                    choosing,
+                ),
+            };
+            let tries = found.iter().take(choosing.tries.max(choosing.alternatives) as usize);
+            Ok(tries.map(|m| candidate::tried(site, m, learned, choosing, ways, &near)).collect())
+        })
+        .collect();
+    let tried: Vec<Vec<Candidate>> = tried.into_iter().collect::<Result<_, _>>()?;
+    run.check()?;
+    let wishes: Vec<f64> = (0..blocks.len())
+        .map(|i| if kinds[i].is_none() { field.coverage[i] } else { f64::NAN })
+        .collect();
+    let chosen = chosen(blocks, &tried, &wishes, &around, learned, choosing, run);
+    Ok(tried
+        .into_iter()
+        .zip(chosen)
+        .zip(given)
+        .zip(wanted)
+        .map(|(((mut tried, ranked), given), wanted)| match given {
+            _ if !wanted => Choice::None,
+            Some(class) => Choice::Open(class),
+            None => {
+                let mut slots: Vec<Option<Candidate>> = tried.drain(..).map(Some).collect();
+                Choice::Filled(ranked.into_iter().filter_map(|k| slots[k].take()).collect())
+            }
+        })
+        .collect())
+}
+
+/// Buildings that stay as they are: in no block, or in blocks that are not filled.
+struct Standing<'a> {
+    polygons: Vec<&'a Polygon>,
+    boxes: BoxGrid,
+}
+
+impl<'a> Standing<'a> {
+    fn of(city: &'a City, blocks: &[Block], wanted: &[bool]) -> Self {
+        let filled = blocks.iter().zip(wanted).filter(|(_, wanted)| **wanted).map(|(b, _)| b.id);
+        let filled: std::collections::BTreeSet<u32> = filled.collect();
+        let stays = city.buildings.iter().filter(|b| !b.is_part && !filled.contains(&b.block));
+        let polygons: Vec<&Polygon> = stays.map(|b| &b.polygon).collect();
+        let boxes = BoxGrid::of(polygons.iter().copied());
+        Self { polygons, boxes }
+    }
+
+    /// Those that reach into a block.
+    fn within(&self, block: &Polygon) -> Vec<Polygon> {
+        let mut near = Vec::new();
+        self.boxes.meeting_polygon(block, &mut near);
+        let found = near.iter().map(|i| self.polygons[*i as usize]);
+        found.filter(|p| overlap::shared_m2(p, block, 0.1) > 0.1).cloned().collect()
+    }
+}
+
+/// Like blocks for a site, best first.
+fn asked(
+    site: &Site<'_>,
+    kind: &Kind,
+    (coverage, height_m): (f64, Option<f64>),
+    learned: &Learned,
+    choosing: &Choosing,
+) -> Vec<Match> {
+    let attributes = Attributes {
+        density: kind.is_none().then_some(coverage),
+        height_m: height_m.filter(|_| kind.is_none()),
+        land_use: site.block.land_use.clone(),
+        relief_m: None,
+    };
+    let query = Query {
+        weights: choosing.weights(),
+        candidates: choosing.candidates as usize,
+        mirrored: choosing.mirrored,
+        ..Query::new(&site.outline, &attributes)
+    };
+    let of_kind = learned.database.query(&query, |l| l.kind == *kind);
+    if of_kind.is_empty() { learned.database.query(&query, |_| true) } else { of_kind }
+}
+
+/// What lies around blocks.
+struct Around {
+    situations: Vec<Situation>,
+    places: Vec<Place>,
+}
+
+impl Around {
+    fn of(city: &City, blocks: &[Block], wanted: &[bool]) -> Self {
+        let surroundings = Surroundings::of(blocks);
+        let main = MainStreets::of(&city.streets);
+        let situations: Vec<Situation> = blocks
+            .par_iter()
+            .map(|block| {
+                let at = block.polygon.centroid();
+                let features = surroundings.features(block, &city.streets);
+                Situation { features, main_m: main.distance_m(at), at }
+            })
+            .collect();
+        let given = learned::built(city, blocks);
+        let places = neighbours(blocks)
+            .into_iter()
+            .enumerate()
+            .map(|(i, neighbours)| Place {
+                features: situations[i].features,
+                neighbours,
+                given: given[i].filter(|_| !wanted[i]),
+            })
+            .collect();
+        Self { situations, places }
+    }
+
+    /// The kind of each block: of those that lie in an example their own, of the others as drawn.
+    fn kinds(
+        &self,
+        sites: &[Option<Site<'_>>],
+        given: &[Option<std::sync::Arc<str>>],
+        same: &[Option<Match>],
+        learned: &Learned,
+        choosing: &Choosing,
+        run: &Run,
+    ) -> Vec<Kind> {
+        let kind_of = |m: &Match| learned.database.layouts[m.entry as usize].kind.clone();
+        let known = |i: usize| -> Option<Kind> {
+            match (&same[i], &given[i], &sites[i]) {
+                (Some(same), ..) => Some(kind_of(same)),
+                (None, Some(class), _) => Some(Some(class.clone())),
+                (None, None, None) => Some(None),
+                _ if !choosing.kinds => Some(None),
+                _ => None,
+            }
+        };
+        let known: Vec<Option<Kind>> = (0..sites.len()).map(known).collect();
+        kinds::draw(
+            &self.situations,
+            &known,
+            &learned.situations,
+            &mut run.stream(rng::fnv1a(b"kinds")),
+        )
+    }
+}
+
+/// The candidates of each block, the chosen one first.
+fn chosen(
+    blocks: &[Block],
+    tried: &[Vec<Candidate>],
+    wishes: &[f64],
+    around: &Around,
+    learned: &Learned,
+    choosing: &Choosing,
+    run: &Run,
+) -> Vec<Vec<usize>> {
+    let noise: Vec<Vec<f64>> = blocks
+        .iter()
+        .zip(tried)
+        .map(|(block, tried)| {
+            let key = rng::place_key(GridPoint::round(block.polygon.centroid()));
+            noise(tried.len(), choosing, &mut run.stream(key))
+        })
+        .collect();
+    let area = |i: usize| blocks[i].polygon.area_m2();
+    let free = |i: &usize| wishes[*i].is_finite() && !tried[*i].is_empty() && !tried[*i][0].is_same;
+    let wanted_m2: f64 = (0..blocks.len()).filter(free).map(|i| wishes[i] * area(i)).sum();
+    let neighbours: Vec<Vec<usize>> = around.places.iter().map(|p| p.neighbours.clone()).collect();
+    let strength = PAIR_COST * choosing.coherence * learned.spread.coherence;
+    let pair = |(i, a): (usize, usize), (j, b): (usize, usize)| {
+        let (a, b) = (&tried[i][a], &tried[j][b]);
+        let one = if a.entry == b.entry && !a.is_same { SAME_LAYOUT_COST } else { 0.0 };
+        strength * learned.spread.distance(&a.looks, &b.looks).min(2.0) + one
+    };
+    let mut level = 1.0;
+    let mut best: Option<(f64, Vec<usize>, joint::Problem)> = None;
+    for _ in 0..LEVEL_ROUNDS {
+        let costs = (0..blocks.len()).map(|i| {
+            let own = |(c, noise): (&Candidate, &f64)| own_cost(c, wishes[i] * level) + noise;
+            tried[i].iter().zip(&noise[i]).map(own).collect()
+        });
+        let problem = joint::Problem { costs: costs.collect(), neighbours: neighbours.clone() };
+        let chosen = joint::choose(&problem, pair);
+        let built_m2: f64 =
+            (0..blocks.len()).filter(free).map(|i| tried[i][chosen[i]].laid.built_m2()).sum();
+        let off = trig::ln(wanted_m2.max(1.0) / built_m2.max(1.0));
+        if best.as_ref().is_none_or(|b| off.abs() < b.0) {
+            best = Some((off.abs(), chosen, problem));
+        }
+        if off.abs() < 0.02 {
+            break;
+        }
+        level = (level * trig::exp(off)).clamp(0.3, 3.0);
+    }
+    let Some((_, chosen, problem)) = best else { return Vec::new() };
+    (0..blocks.len())
+        .map(|i| {
+            let mut order: Vec<usize> = (0..tried[i].len()).collect();
+            let cost = |k: usize| problem.costs[i][k];
+            order.sort_by(|a, b| {
+                (*b == chosen[i])
+                    .cmp(&(*a == chosen[i]))
+                    .then(cost(*a).total_cmp(&cost(*b)))
+                    .then(a.cmp(b))
+            });
+            let skip = (choosing.alternative as usize - 1).min(order.len().saturating_sub(1));
+            if !order.is_empty() {
+                order[..=skip].rotate_right(1);
+            }
+            order
+        })
+        .collect()
+}
+
+/// What a candidate costs by itself, where a share of the block is wished to be built on.
+fn own_cost(candidate: &Candidate, wish: f64) -> f64 {
+    let slack = 0.02;
+    let off = if wish.is_finite() {
+        trig::ln((candidate.looks.coverage() + slack) / (wish + slack)).abs()
+    } else {
+        0.0
+    };
+    candidate.cost + COVERAGE_COST * off + LOSS_COST * (1.0 - candidate.kept)
+}
+
+/// What draws among the best: nothing for one, else costs whose cheapest is drawn (Gumbel).
+fn noise(count: usize, choosing: &Choosing, rng: &mut Rng) -> Vec<f64> {
+    let pick = choosing.pick as usize;
+    (0..count)
+        .map(|k| {
+            let uniform: f64 = rng.random::<f64>().clamp(1e-12, 1.0 - 1e-12);
+            match pick {
+                1 => 0.0,
+                _ if k >= pick => 1.0,
+                _ => PICK_SPREAD * trig::ln(-trig::ln(uniform)),
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,90 @@
+//! Hartmann 2018, figure 5.7: blocks emptied and filled again from their own city get their buildings
+//! back.
+
+mod shared;
+
+use std::collections::BTreeMap;
+
+use exurb_blocks::transfer::Transfer;
+use exurb_city::Building;
+use exurb_geom::{BoxGrid, overlap};
+use exurb_operation::{Example, Run, Scope, erase};
+
+/// Corners that come back this near are back, in millimetres.
+const NEAR_MM: i32 = 10;
+
+/// Does some building of the other city stand where `building` does?
+fn is_back(building: &Building, others: &[Building], boxes: &BoxGrid) -> bool {
+    let mut near = Vec::new();
+    boxes.meeting_polygon(&building.polygon, &mut near);
+    near.iter().map(|i| &others[*i as usize]).any(|other| {
+        let (a, b) = (building.polygon.exterior(), other.polygon.exterior());
+        let at = |k: usize| {
+            (0..a.len()).all(|i| {
+                let (p, q) = (a[i], b[(i + k) % b.len()]);
+                (p.x - q.x).abs() <= NEAR_MM && (p.y - q.y).abs() <= NEAR_MM
+            })
+        };
+        a.len() == b.len() && (0..b.len()).any(at)
+    })
+}
+
+/// Which buildings share over 0.1 m² with another?
+fn overlapping(buildings: &[&Building]) -> Vec<bool> {
+    let boxes = BoxGrid::of(buildings.iter().map(|b| &b.polygon));
+    let mut near = Vec::new();
+    (0..buildings.len())
+        .map(|i| {
+            boxes.meeting_polygon(&buildings[i].polygon, &mut near);
+            near.iter().map(|j| *j as usize).filter(|j| *j != i).any(|j| {
+                overlap::shared_m2(&buildings[i].polygon, &buildings[j].polygon, 0.1) > 0.1
+            })
+        })
+        .collect()
+}
+
+#[test]
+fn blocks_filled_from_their_own_city_get_their_buildings_back() {
+    let Some(folder) = shared::folder() else { return };
+    for name in shared::COMPLETE {
+        let city = shared::city(&folder, name);
+        let examples = [Example::new(city.clone())];
+        let operation = erase::<Transfer>();
+        let params = serde_json::Value::Null;
+        let made = operation.run(&city, &Scope::All, &examples, params, &Run::new(1));
+        let made = made.expect("the map has blocks").city;
+        let whole: Vec<&Building> = city.buildings.iter().filter(|b| !b.is_part).collect();
+        let boxes = BoxGrid::of(made.buildings.iter().map(|b| &b.polygon));
+        let overlapping = overlapping(&whole);
+        let (mut counted, mut back, mut all_back) = (0u32, 0u32, 0u32);
+        let mut missing: BTreeMap<&str, usize> = BTreeMap::new();
+        for (building, overlaps) in whole.iter().zip(overlapping) {
+            let is_back = is_back(building, &made.buildings, &boxes);
+            all_back += u32::from(is_back);
+            let over_kerb = building.block != 0
+                && overlap::outside_m2(
+                    &building.polygon,
+                    &city.blocks[building.block as usize - 1].polygon,
+                ) > 0.1;
+            let reason = match (building.block, overlaps) {
+                (0, _) => "in no block",
+                (_, true) => "overlaps another",
+                _ if over_kerb => "reaches over a kerb",
+                _ => "beside one that does",
+            };
+            if building.block != 0 && !overlaps {
+                counted += 1;
+                back += u32::from(is_back);
+            }
+            if !is_back {
+                *missing.entry(reason).or_default() += 1;
+            }
+        }
+        let share = f64::from(back) / f64::from(counted);
+        let all = f64::from(all_back) / whole.len() as f64;
+        println!(
+            "{name}: {share:.4} of {counted}, {all:.4} of all {}, missing {missing:?}",
+            whole.len()
+        );
+    }
+}
