@@ -6,7 +6,7 @@ mod write;
 
 pub(crate) use read::read_database;
 pub use read::read_geopackage;
-pub use write::write_geopackage;
+pub use write::{write_geopackage, write_themes};
 
 #[cfg(test)]
 mod tests;

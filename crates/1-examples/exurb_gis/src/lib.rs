@@ -25,6 +25,7 @@
 //! |---|---|
 //! | [`geopackage`] | [`write_geopackage`], [`read_geopackage`] |
 //! | [`geojson`] | [`write_geojson`], [`read_geojson`], [`read_geojson_many`], [`read_target`] |
+//! | [`theme`] | layers of figures on a city: [`write_themes`] |
 //! | [`fuzz`] | what fuzzing calls |
 //!
 //! ```
@@ -53,6 +54,7 @@ mod numbered;
 mod recognise;
 #[cfg(test)]
 mod sample;
+pub mod theme;
 mod value;
 mod wkb;
 
@@ -60,4 +62,5 @@ pub use error::Error;
 pub use geojson::{
     read_geojson, read_geojson_many, read_target, write_geojson, write_geojson_file,
 };
-pub use geopackage::{read_geopackage, write_geopackage};
+pub use geopackage::{read_geopackage, write_geopackage, write_themes};
+pub use theme::{Theme, ThemeRow};

@@ -53,6 +53,8 @@ pub struct Reference {
     pub yardstick: Yardstick,
     /// What was measured of the example's own other part.
     pub part: Subject,
+    /// Streets of the held-out part.
+    pub held_out: Network,
     /// Names of the cities of the floor.
     pub floor: Vec<String>,
     /// What a reader should know, a sentence each.
@@ -165,6 +167,7 @@ impl Reference {
             size,
             yardstick,
             part: own.into_iter().next().expect("an example has a part"),
+            held_out: network,
             floor: floor_names,
             notes,
             original: Original::new(&whole),

@@ -17,6 +17,7 @@
 //! | [`copying`] | how much of a city stands in its example |
 //! | [`panel`] | what was measured of nine cities, for floors |
 //! | [`scorecard`] | ceilings, floors, scores |
+//! | [`unlikely`] | where a candidate differs, block by block |
 //! | [`mod@windows`] | windows of equal size |
 //! | [`nets`] | streets by rule, with and without a city: what a scale must put in order |
 //! | [`yardstick_table`] | the table that shows whether it does |
@@ -35,6 +36,7 @@ pub mod nets;
 pub mod panel;
 pub mod patches;
 pub mod scorecard;
+pub mod unlikely;
 pub mod windows;
 pub mod words;
 pub mod yardstick_table;
