@@ -243,7 +243,7 @@ fn unseen(city: &City, panel: &Panel, inside: bool) -> Option<Unseen> {
     Some(Unseen {
         total: mean(&|c| c.total)?,
         core: mean(&|c| c.core)?,
-        families: Family::ALL.into_iter().filter_map(family).collect(),
+        families: Family::STREETS.into_iter().filter_map(family).collect(),
     })
 }
 
@@ -284,14 +284,14 @@ impl Mean {
         Self {
             total: over(&|c| c.scorecard.total),
             core: over(&|c| c.scorecard.core),
-            families: Family::ALL
+            families: Family::STREETS
                 .iter()
                 .map(|f| over(&|c| c.scorecard.families.get(f).copied()))
                 .collect(),
             copies: [over(&|c| c.copy_rates[0]), over(&|c| c.copy_rates[1])],
             example_share: over(&|c| c.example_share),
             unseen: [unseen(&|u| Some(u.total)), unseen(&|u| Some(u.core))],
-            unseen_families: Family::ALL
+            unseen_families: Family::STREETS
                 .iter()
                 .map(|f| unseen(&|u| u.families.get(f).copied()))
                 .collect(),
@@ -301,7 +301,7 @@ impl Mean {
 
     fn json(&self) -> Value {
         let families = |values: &[Option<f64>]| -> Map<String, Value> {
-            let named = Family::ALL.iter().zip(values);
+            let named = Family::STREETS.iter().zip(values);
             named.map(|(f, v)| (f.name().to_owned(), json!(v.map(round)))).collect()
         };
         let measures: Map<String, Value> = self
@@ -343,7 +343,7 @@ impl MapRun {
 }
 
 fn print_table(runs: &[MapRun], qualifying: &[&MapRun]) {
-    let families: Vec<&str> = Family::ALL.iter().map(|f| f.name()).collect();
+    let families: Vec<&str> = Family::STREETS.iter().map(|f| f.name()).collect();
     println!(
         "| map | split | TOTAL | CORE | {} | copied 150 m | copied 300 m | laid by patches | unseen TOTAL | unseen CORE |",
         families.join(" | ")

@@ -29,22 +29,23 @@ pub fn run(options: &[&str]) -> Outcome {
     if options.is_empty() && chosen.is_empty() { write(&table) } else { Ok(()) }
 }
 
-/// Measures the nine cities of the panel and writes what `exurb compare` has built in.
+/// Measures the cities and towns of the panel and writes what `exurb compare` has built in.
 pub fn panel() -> Outcome {
-    let cities = std::fs::read_to_string(root().join("crates/2-learn/exurb_likeness/src/panel.rs"))
-        .map_err(|e| e.to_string())?;
-    let list =
-        cities.split_once("CITIES: [&str; 9] = [").and_then(|(_, rest)| rest.split_once(']'));
-    let names: Vec<&str> =
-        list.map_or("", |(list, _)| list).split('"').skip(1).step_by(2).collect();
+    let source = root().join("crates/2-learn/exurb_likeness/src/panel.rs");
+    let source = std::fs::read_to_string(source).map_err(|e| e.to_string())?;
     let folder = root().join("../shared/data/osm");
-    let maps: Vec<PathBuf> = names.iter().map(|n| folder.join(format!("{n}.osm.pbf"))).collect();
-    if let Some(missing) = maps.iter().find(|map| !map.exists()) {
+    let maps = |list: &str| -> Vec<PathBuf> {
+        let names = source.split_once(list).and_then(|(_, rest)| rest.split_once(']'));
+        let names = names.map_or("", |(names, _)| names).split('"').skip(1).step_by(2);
+        names.map(|name| folder.join(format!("{name}.osm.pbf"))).collect()
+    };
+    let (cities, towns) = (maps("CITIES: [&str; 9] = ["), maps("TOWNS: [&str; 9] = ["));
+    if let Some(missing) = cities.iter().chain(&towns).find(|map| !map.exists()) {
         return Err(format!("the panel needs {}", missing.display()));
     }
     let file = root().join("crates/2-learn/exurb_likeness/data/panel.json.gz");
     let mut example = cargo("run --release --locked --package exurb_likeness --example panel --");
-    shell::run(example.arg(&file).args(maps))
+    shell::run(example.arg(&file).args(cities).arg("--").args(towns))
 }
 
 fn maps() -> Outcome<Vec<PathBuf>> {

@@ -28,6 +28,7 @@
 //! | [`geopackage`] | [`write_geopackage`], [`read_geopackage`] |
 //! | [`geojson`] | [`write_geojson`], [`read_geojson`], [`read_geojson_many`] |
 //! | [`target`] | [`read_target`] |
+//! | [`theme`] | layers of figures on a city: [`write_themes`] |
 //! | [`fuzz`] | what fuzzing calls |
 //!
 //! ```
@@ -57,6 +58,7 @@ mod recognise;
 #[cfg(test)]
 mod sample;
 pub mod target;
+pub mod theme;
 mod value;
 mod wkb;
 
@@ -65,7 +67,8 @@ pub use geojson::{
     read_geojson, read_geojson_many, write_geojson, write_geojson_file, write_geojson_streets,
 };
 pub use geopackage::{
-    forget_journals, read_geopackage, write_geopackage, write_geopackage_streets,
+    forget_journals, read_geopackage, write_geopackage, write_geopackage_streets, write_themes,
 };
 pub use layers::Streets;
 pub use target::{TargetArea, read_target};
+pub use theme::{Theme, ThemeRow};

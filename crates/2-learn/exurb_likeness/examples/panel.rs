@@ -1,4 +1,4 @@
-//! `panel FILE MAP...`: measures the built-in panel from maps. `cargo xtask panel` runs it.
+//! `panel FILE CITY... -- TOWN...`: measures the built-in panel from maps. `cargo xtask panel` runs it.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -13,9 +13,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         city.metadata.name = name.split('.').next().unwrap_or_default().into();
         Ok(city)
     };
-    let mut files = std::env::args_os().skip(1).map(PathBuf::from);
-    let out = files.next().ok_or("name the file to write, then the maps")?;
-    let cities: Vec<City> = files.map(city).collect::<Result<_, _>>()?;
-    std::fs::write(out, Panel::measure(&cities, 1)?.write()?)?;
+    let arguments: Vec<PathBuf> = std::env::args_os().skip(1).map(PathBuf::from).collect();
+    let (out, maps) = arguments.split_first().ok_or("name the file to write, then the maps")?;
+    let at = maps.iter().position(|map| map.as_os_str() == "--").unwrap_or(maps.len());
+    let read = |maps: &[PathBuf]| maps.iter().cloned().map(city).collect::<Result<Vec<_>, _>>();
+    let (cities, towns) = (read(&maps[..at])?, read(maps.get(at + 1..).unwrap_or_default())?);
+    std::fs::write(out, Panel::measure(&cities, &towns, 1)?.write()?)?;
     Ok(())
 }

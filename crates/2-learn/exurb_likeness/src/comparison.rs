@@ -5,7 +5,7 @@ use exurb_geom::{Bounds, Vec2};
 use exurb_measure::Network;
 
 use crate::copying::Original;
-use crate::measures::STREETS;
+use crate::measures::{BUILT, Family, STREETS};
 use crate::panel::{self, Panel};
 use crate::patches::{CANDIDATE, HELD_OUT, Patches};
 use crate::{HeldOut, Measured, Scorecard, Side, Yardstick, windows};
@@ -53,6 +53,8 @@ pub struct Reference {
     pub yardstick: Yardstick,
     /// What was measured of the example's own other part.
     pub part: Subject,
+    /// Streets of the held-out part.
+    pub held_out: Network,
     /// Names of the cities of the floor.
     pub floor: Vec<String>,
     /// What a reader should know, a sentence each.
@@ -74,9 +76,16 @@ pub struct Subject {
 
 impl Subject {
     /// Measures a window. `key` is [`HELD_OUT`] for the part compared with, else [`CANDIDATE`].
+    /// Buildings of an imported map count where they are complete.
     pub fn of(place: Place, panel: &Panel, seed: u64, key: u64) -> Self {
-        let network = Network::of(&place.city.streets, place.window);
-        let measured = Measured::of_network(&network);
+        let city = place.city;
+        let network = Network::of(&city.streets, place.window);
+        let is_made = !city.metadata.recipe.is_empty();
+        let measured = if is_made || city.metadata.buildings_complete || !city.parcels.is_empty() {
+            Measured::of_city(city, &network)
+        } else {
+            Measured::of_network(&network)
+        };
         let look = |image| Patches::of(image, &panel.dictionary, seed, key);
         let patches = measured.image.as_ref().map(look);
         Self { network, measured, patches }
@@ -151,12 +160,14 @@ impl Reference {
         let sides: Vec<Side> = own.iter().map(Subject::side).collect();
         let whole = Network::of(&example.streets, example.target.bounds());
         let floor_names = names.chain(of_panel.iter().map(|c| c.name.clone())).collect();
-        let yardstick = Yardstick::new(held_out, &STREETS, &sides, &floor);
+        let measures = [&STREETS[..], &BUILT].concat();
+        let yardstick = Yardstick::new(held_out, &measures, &sides, &floor);
         Self {
             name: example.metadata.name.to_string(),
             size,
             yardstick,
             part: own.into_iter().next().expect("an example has a part"),
+            held_out: network,
             floor: floor_names,
             notes,
             original: Original::new(&whole),
@@ -172,10 +183,21 @@ impl Reference {
     }
 
     fn compare_subject(&self, city: &City, candidate: Subject) -> Likeness {
-        let scorecard = self.yardstick.score(candidate.side());
+        let mut notes = thin(&candidate.network, "the candidate");
+        let mut unjudged = Vec::new();
+        if city.buildings.is_empty() {
+            unjudged.extend([Family::Buildings, Family::BuiltBlocks]);
+        }
+        if city.parcels.is_empty() {
+            unjudged.push(Family::Parcels);
+        }
+        let held_out = self.yardstick.held_out();
+        if unjudged.iter().any(|family| held_out.has_family(*family)) {
+            notes.push("the candidate has no buildings or no parcels: they are not judged".into());
+        }
+        let scorecard = self.yardstick.score(candidate.side()).without(&unjudged);
         let copy_rates =
             COPY_RADII_M.map(|radius_m| self.original.copy_rate(&candidate.network, radius_m));
-        let mut notes = thin(&candidate.network, "the candidate");
         if candidate.measured.fingerprint.is_empty() {
             notes.push("the candidate has no blocks: measures of blocks score -1".to_owned());
         }

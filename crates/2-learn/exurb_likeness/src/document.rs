@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::comparison::{Likeness, Reference};
 use crate::explain::{figure, sentence, typical, worst};
-use crate::measures::{Distance, Family};
+use crate::measures::{Distance, Family, STREETS};
 use crate::scorecard::Score;
 use crate::words::words;
 use crate::{Measured, distance};
@@ -26,6 +26,8 @@ pub struct Document {
     pub total: Option<f64>,
     /// The same over the core measures.
     pub core: Option<f64>,
+    /// The mean of the families of buildings and parcels; `None` where the example has none.
+    pub built: Option<f64>,
     /// Mean score by family; `None` where no measure of it is informative.
     pub families: IndexMap<&'static str, Option<f64>>,
     /// Every measure, in the order of the scorecard.
@@ -87,7 +89,8 @@ impl Document {
             example: reference.name.clone(),
             total: card.total.map(round),
             core: card.core.map(round),
-            families: Family::ALL.into_iter().map(family).collect(),
+            built: card.built.map(round),
+            families: Family::STREETS.into_iter().chain(Family::BUILT).map(family).collect(),
             measures: card.measures.iter().map(measure).collect(),
             informative: card.informative(),
             copy_rate_150m: likeness.copy_rates[0].map(round),
@@ -106,7 +109,9 @@ impl Document {
             "{:<24} {:>10} {:>10} {:>9} {:>8} {:>7} {:>7}\n",
             "", "example", "candidate", "distance", "ceiling", "floor", "score"
         );
-        for (name, m) in &self.measures {
+        let is_street = |m: &MeasureDocument| Family::STREETS.iter().any(|f| f.name() == m.family);
+        let here = |m: &MeasureDocument| is_street(m) || m.ceiling.or(m.distance).is_some();
+        for (name, m) in self.measures.iter().filter(|(_, m)| here(m)) {
             let cell = |value: Option<f64>| value.map_or("-".to_owned(), |v| format!("{v:.2}"));
             let value = |value: Option<f64>| value.map_or("-".to_owned(), |v| figure(v, ""));
             let score =
@@ -130,18 +135,20 @@ impl Document {
 
     fn summary(&self) -> String {
         let cell = |value: Option<f64>| value.map_or("-".to_owned(), |v| format!("{v:.2}"));
+        let known = self.families.iter().filter(|(_, score)| score.is_some());
         let families: Vec<String> =
-            self.families.iter().map(|(name, v)| format!("{name} {}", cell(*v))).collect();
+            known.map(|(name, score)| format!("{name} {}", cell(*score))).collect();
         let mut out = format!(
-            "* core measure, (…) not informative here: {} of {} count\n\n\
-             TOTAL {}   CORE {}   {}\n\
+            "* core measure, (…) not informative here: {} of {} of streets and blocks count\n\n\
+             TOTAL {}   CORE {}   BUILT {}   {}\n\
              copied          {} of junctions with what lies within 150 m, {} within 300 m; \
              {} of the street length was laid from this example\n\
              windows         {:.0} x {:.0} m; floor of {} cities\n",
             self.informative,
-            self.measures.len(),
+            STREETS.len(),
             cell(self.total),
             cell(self.core),
+            cell(self.built),
             families.join("  "),
             cell(self.copy_rate_150m),
             cell(self.copy_rate_300m),
@@ -183,7 +190,7 @@ impl MeasureDocument {
 
     /// A value of this measure with its unit.
     pub fn with_unit(name: &str, value: Option<f64>) -> String {
-        let unit = crate::STREETS.iter().find(|m| m.name == name).map_or("", |m| words(m).unit);
+        let unit = crate::measures::find(name).map_or("", |m| words(m).unit);
         value.map_or("-".to_owned(), |v| figure(v, unit))
     }
 }

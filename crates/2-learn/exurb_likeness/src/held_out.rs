@@ -6,7 +6,7 @@ use exurb_measure::Sample;
 use exurb_operation::rng;
 
 use crate::draws::{self, ByWeight};
-use crate::measures::{Distance, Measure};
+use crate::measures::{BUILT, Distance, Family, Measure};
 use crate::patches::{Patches, kernel_distance, told_apart};
 use crate::scorecard::mean;
 use crate::{Measured, distance};
@@ -96,6 +96,11 @@ impl HeldOut {
             Distance::Discrepancy => !m.fingerprint.is_empty(),
             Distance::Classifier | Distance::Kernel => self.patches.is_some(),
         }
+    }
+
+    /// Has the part anything that measures of this family of buildings look at?
+    pub fn has_family(&self, family: Family) -> bool {
+        BUILT.iter().any(|m| m.family == family && self.has(m))
     }
 
     /// How far `other` is from the part; `None` where one of both lacks what is measured. The same

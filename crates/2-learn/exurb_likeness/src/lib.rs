@@ -17,6 +17,7 @@
 //! | [`copying`] | how much of a city stands in its example |
 //! | [`panel`] | what was measured of nine cities, for floors |
 //! | [`scorecard`] | ceilings, floors, scores |
+//! | [`unlikely`] | where a candidate differs, block by block |
 //! | [`mod@windows`] | windows of equal size |
 //! | [`nets`] | streets by rule, with and without a city: what a scale must put in order |
 //! | [`yardstick_table`] | the table that shows whether it does |
@@ -29,11 +30,13 @@ pub mod draws;
 pub mod explain;
 pub mod held_out;
 pub mod measured;
+mod measured_built;
 pub mod measures;
 pub mod nets;
 pub mod panel;
 pub mod patches;
 pub mod scorecard;
+pub mod unlikely;
 pub mod windows;
 pub mod words;
 pub mod yardstick_table;
@@ -42,6 +45,6 @@ pub use comparison::{Floor, Likeness, Place, Reference, Subject};
 pub use document::Document;
 pub use held_out::{HeldOut, Side};
 pub use measured::Measured;
-pub use measures::{Family, Measure, STREETS};
+pub use measures::{BUILT, Family, Measure, STREETS};
 pub use panel::Panel;
 pub use scorecard::{Score, Scorecard, Yardstick};

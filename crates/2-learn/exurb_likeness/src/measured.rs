@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use exurb_city::StreetGraph;
+use exurb_city::{City, StreetGraph};
 use exurb_geom::Bounds;
 use exurb_measure::block_shapes::{self, BlockShape};
 use exurb_measure::{Network, Sample, bearings, junctions, moving_windows, natural_streets};
 use exurb_measure::{paths, segments};
 use exurb_operation::rng;
 
+use crate::measured_built;
 use crate::patches::Image;
 
 /// Bands of distances at which directions are compared, in metres.
@@ -45,8 +46,26 @@ impl Measured {
 
     /// [`Measured::of`] for streets that were cut and cleaned already.
     pub fn of_network(network: &Network) -> Self {
-        let ((blocks, aligned), (paths, image)) = rayon::join(
-            || (block_shapes::blocks(network), aligned(network)),
+        Self::of_network_and(network, |_| Vec::new())
+    }
+
+    /// The streets of a network and what stands between them in their city.
+    pub fn of_city(city: &City, network: &Network) -> Self {
+        Self::of_network_and(network, |blocks| {
+            measured_built::samples(city, blocks, network.window)
+        })
+    }
+
+    fn of_network_and(
+        network: &Network,
+        built: impl FnOnce(&[BlockShape]) -> Vec<(&'static str, Sample)> + Send,
+    ) -> Self {
+        let ((blocks, built, aligned), (paths, image)) = rayon::join(
+            || {
+                let blocks = block_shapes::blocks(network);
+                let built = built(&blocks);
+                (blocks, built, aligned(network))
+            },
             || {
                 let mut rng = rng::stream(SEED, "likeness paths", 0);
                 (paths::paths(network, &mut rng), Image::draw(network))
@@ -77,7 +96,7 @@ impl Measured {
             ("betweenness_local", paths.betweenness),
             ("natural_street_length", natural_streets::length(network)),
         ];
-        let all = named.into_iter().chain(aligned);
+        let all = named.into_iter().chain(aligned).chain(built);
         let samples: BTreeMap<_, _> = all
             .filter(|(_, sample)| sample.len() > FEW)
             .map(|(name, sample)| (name, sample.sorted()))

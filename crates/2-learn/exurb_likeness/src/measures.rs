@@ -11,11 +11,14 @@ pub enum Family {
     Density,
     Network,
     Patches,
+    Buildings,
+    BuiltBlocks,
+    Parcels,
 }
 
 impl Family {
-    /// All families, in the order of the table.
-    pub const ALL: [Self; 7] = [
+    /// Families of streets and blocks, in the order of the table: TOTAL is their mean.
+    pub const STREETS: [Self; 7] = [
         Self::Segments,
         Self::Junctions,
         Self::Blocks,
@@ -24,6 +27,8 @@ impl Family {
         Self::Network,
         Self::Patches,
     ];
+    /// Families of what stands in the blocks: BUILT is their mean.
+    pub const BUILT: [Self; 3] = [Self::Buildings, Self::BuiltBlocks, Self::Parcels];
 
     /// Its name.
     pub fn name(self) -> &'static str {
@@ -35,6 +40,9 @@ impl Family {
             Self::Density => "density",
             Self::Network => "network",
             Self::Patches => "patches",
+            Self::Buildings => "buildings",
+            Self::BuiltBlocks => "built_blocks",
+            Self::Parcels => "parcels",
         }
     }
 }
@@ -116,6 +124,34 @@ pub const STREETS: [Measure; 30] = [
     by("patch_kid", Family::Patches, true, Distance::Kernel),
 ];
 
+/// Measures of buildings, blocks as they are built up, and parcels, where a city has them.
+pub const BUILT: [Measure; 19] = [
+    plain("b_area", Family::Buildings, 0.1),
+    plain("b_elongation", Family::Buildings, 0.1),
+    plain("b_rectangularity", Family::Buildings, 0.05),
+    plain("b_corners", Family::Buildings, 1.0),
+    plain("b_setback", Family::Buildings, 2.0),
+    plain("b_street_alignment", Family::Buildings, 4.0),
+    plain("b_nearest_building", Family::Buildings, 2.0),
+    plain("b_height", Family::Buildings, 2.0),
+    plain("blk_coverage_gsi", Family::BuiltBlocks, 0.05),
+    plain("blk_buildings_per_ha", Family::BuiltBlocks, 3.0),
+    plain("blk_far_fsi", Family::BuiltBlocks, 0.1),
+    plain("blk_corners_built", Family::BuiltBlocks, 0.1),
+    plain("blk_setback_variation", Family::BuiltBlocks, 0.5),
+    plain("parcel_area", Family::Parcels, 0.1),
+    plain("parcel_frontage", Family::Parcels, 2.0),
+    plain("parcel_depth_ratio", Family::Parcels, 0.1),
+    plain("parcel_rectangularity", Family::Parcels, 0.05),
+    plain("parcel_buildings", Family::Parcels, 0.2),
+    plain("parcel_front_setback", Family::Parcels, 1.0),
+];
+
+/// The measure of that name.
+pub fn find(name: &str) -> Option<&'static Measure> {
+    STREETS.iter().chain(&BUILT).find(|m| m.name == name)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -123,9 +159,9 @@ mod tests {
     #[test]
     fn fourteen_measures_are_core_and_names_differ() {
         assert_eq!(STREETS.iter().filter(|m| m.core).count(), 14);
-        let mut names: Vec<&str> = STREETS.iter().map(|m| m.name).collect();
+        let mut names: Vec<&str> = STREETS.iter().chain(&BUILT).map(|m| m.name).collect();
         names.sort_unstable();
         names.dedup();
-        assert_eq!(names.len(), STREETS.len());
+        assert_eq!(names.len(), STREETS.len() + BUILT.len());
     }
 }

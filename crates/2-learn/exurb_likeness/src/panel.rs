@@ -9,13 +9,13 @@ use std::collections::BTreeMap;
 use std::io::Read;
 
 use exurb_city::{City, Part};
-use exurb_measure::Sample;
+use exurb_measure::{Network, Sample};
 use ndarray::Array2;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::draws::ByWeight;
-use crate::measures::STREETS;
+use crate::measures::{BUILT, STREETS};
 use crate::patches::{CANDIDATE, Dictionary, Filters, Image, LearnError, Patches};
 use crate::{Measured, Side, windows};
 
@@ -32,6 +32,19 @@ pub const CITIES: [&str; 9] = [
     "porto_alegre",
 ];
 
+/// The fixed panel of towns with complete buildings, by file name of their maps.
+pub const TOWNS: [&str; 9] = [
+    "baltimore_county_suburb_east",
+    "berlin_borsigwalde",
+    "copenhagen_east",
+    "garmisch",
+    "karlsruhe_kirchfeld",
+    "lauf_pegnitz",
+    "london_holborn",
+    "monaco_menton_east",
+    "porto_east",
+];
+
 const BUILTIN: &[u8] = include_bytes!("../data/panel.json.gz");
 /// Quantiles kept of a distribution, and blocks of a fingerprint.
 const QUANTILES: usize = 200;
@@ -44,8 +57,10 @@ const MOST_LEVEL: f32 = 63.0;
 pub struct Panel {
     /// Filters of the discriminator, learned from these cities.
     pub dictionary: Dictionary,
-    /// The cities.
+    /// Cities, for streets and blocks.
     pub cities: Vec<PanelCity>,
+    /// Towns, for buildings.
+    pub towns: Vec<PanelCity>,
 }
 
 /// What was measured of one city.
@@ -91,19 +106,18 @@ impl Panel {
         packed.finish().map_err(|e| wrong(e.to_string()))
     }
 
-    /// The cities that lie apart from all of these: their own place is no other city.
+    /// The cities and towns that lie apart from all of these: their own place is no other city.
     pub fn others<'a>(&'a self, cities: &[&City]) -> Vec<&'a PanelCity> {
         let places: Vec<[f64; 4]> = cities.iter().map(|city| place_of(city)).collect();
-        let apart =
-            |a: &[f64; 4], b: &[f64; 4]| a[2] < b[0] || b[2] < a[0] || a[3] < b[1] || b[3] < a[1];
-        self.cities.iter().filter(|c| places.iter().all(|p| apart(&c.bbox, p))).collect()
+        let apart = |city: &&PanelCity| places.iter().all(|p| shared_area(city.bbox, *p) == 0.0);
+        self.cities.iter().chain(&self.towns).filter(apart).collect()
     }
 }
 
 impl Panel {
-    /// Measures a panel: the west half of each city's densest square. The filters are learned from
-    /// both halves of all of them.
-    pub fn measure(cities: &[City], seed: u64) -> Result<Self, LearnError> {
+    /// Measures a panel: of each city the west half of its densest square, of each town its
+    /// buildings. The filters are learned from both halves of all cities.
+    pub fn measure(cities: &[City], towns: &[City], seed: u64) -> Result<Self, LearnError> {
         let parts = [Part::West, Part::East];
         let halves: Vec<[Measured; 2]> = cities
             .par_iter()
@@ -119,11 +133,23 @@ impl Panel {
             measured: west,
         };
         let cities = cities.iter().zip(halves).map(city).collect();
-        Ok(Self { dictionary, cities })
+        Ok(Self { dictionary, cities, towns: towns.par_iter().map(PanelCity::town).collect() })
     }
 }
 
 impl PanelCity {
+    /// The buildings of a whole town.
+    fn town(city: &City) -> Self {
+        let network = Network::of(&city.streets, city.target.bounds());
+        let mut measured = Measured::of_city(city, &network);
+        let is_built = |name: &str| BUILT.iter().any(|m| m.name == name);
+        measured.samples.retain(|name, _| is_built(name));
+        measured.sizes.retain(|name, _| is_built(name));
+        measured =
+            Measured { samples: measured.samples, sizes: measured.sizes, ..Measured::default() };
+        Self { name: city.metadata.name.to_string(), bbox: place_of(city), measured, patches: None }
+    }
+
     /// As one side of a comparison.
     pub fn side(&self) -> Side<'_> {
         Side { measured: &self.measured, patches: self.patches.as_ref() }
@@ -149,6 +175,7 @@ struct Document {
     about: String,
     filters: Vec<FiltersDocument>,
     cities: Vec<CityDocument>,
+    towns: Vec<CityDocument>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -189,7 +216,7 @@ impl Document {
     fn of(panel: &Panel) -> Self {
         let about = "Measured from OpenStreetMap data, (c) OpenStreetMap contributors, ODbL 1.0: \
                      distributions of streets and blocks in the west half of each city's densest \
-                     5 km square, without geometry.";
+                     5 km square, and of the buildings of nine towns, without geometry.";
         let filters = panel.dictionary.scales.iter().map(|f| FiltersDocument {
             mean: f.mean.to_vec(),
             whitening: f.whitening.iter().copied().collect(),
@@ -199,6 +226,7 @@ impl Document {
             about: about.to_owned(),
             filters: filters.collect(),
             cities: panel.cities.iter().map(CityDocument::of).collect(),
+            towns: panel.towns.iter().map(CityDocument::of).collect(),
         }
     }
 
@@ -211,8 +239,9 @@ impl Document {
             .collect::<Option<_>>()
             .ok_or_else(wrong)?;
         let scales = filters.try_into().map_err(|_| wrong())?;
-        let cities = self.cities.into_iter().map(CityDocument::city).collect();
-        Ok(Panel { dictionary: Dictionary { scales }, cities })
+        let [cities, towns] = [self.cities, self.towns]
+            .map(|list| list.into_iter().map(CityDocument::city).collect());
+        Ok(Panel { dictionary: Dictionary { scales }, cities, towns })
     }
 }
 
@@ -244,7 +273,7 @@ impl CityDocument {
             fingerprint: self.blocks.iter().map(|b| (b.map(f64::from), 1.0)).collect(),
             ..Measured::default()
         };
-        for measure in STREETS {
+        for measure in STREETS.iter().chain(&BUILT) {
             if let Some(found) = self.distributions.get(measure.name) {
                 let values = found.quantiles.iter().map(|v| f64::from(*v));
                 measured.samples.insert(measure.name, Sample::plain(values));

@@ -91,10 +91,12 @@ pub struct Score {
 /// How like its example a candidate is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scorecard {
-    /// Mean of the families.
+    /// TOTAL: mean of the families of streets and blocks.
     pub total: Option<f64>,
     /// Mean of the families over the core measures.
     pub core: Option<f64>,
+    /// BUILT: mean of the families of buildings and parcels.
+    pub built: Option<f64>,
     /// Mean score by family; families without an informative measure are left out.
     pub families: BTreeMap<Family, f64>,
     /// Every measure.
@@ -124,9 +126,10 @@ impl Yardstick {
         &self.marks
     }
 
-    /// Number of measures that separate here.
+    /// Number of measures of streets and blocks that separate here.
     pub fn informative(&self) -> usize {
-        self.marks.iter().filter(|m| m.separate(m.ceiling(), m.floor())).count()
+        let streets = self.marks.iter().filter(|m| Family::STREETS.contains(&m.measure.family));
+        streets.filter(|m| m.separate(m.ceiling(), m.floor())).count()
     }
 
     /// Scores a candidate.
@@ -168,9 +171,20 @@ impl Yardstick {
 impl Scorecard {
     /// Averages scores.
     pub fn of(measures: Vec<Score>) -> Self {
-        let families = families(&measures, |_| true);
-        let core = families_mean(&families_of_core(&measures));
-        Self { total: families_mean(&families), core, families, measures }
+        let families = families_where(&measures, |_| true);
+        let core = mean_of(&families_where(&measures, |s| s.measure.core), &Family::STREETS);
+        let (total, built) =
+            (mean_of(&families, &Family::STREETS), mean_of(&families, &Family::BUILT));
+        Self { total, core, built, families, measures }
+    }
+
+    /// The card without these families: their measures are not judged.
+    pub fn without(self, families: &[Family]) -> Self {
+        let judged = |score: Score| match families.contains(&score.measure.family) {
+            true => Score { score: None, informative: false, ..score },
+            false => score,
+        };
+        Self::of(self.measures.into_iter().map(judged).collect())
     }
 
     /// The score of a measure by name.
@@ -178,27 +192,24 @@ impl Scorecard {
         self.measures.iter().find(|s| s.measure.name == name)
     }
 
-    /// Number of measures that count.
+    /// Number of measures of streets and blocks that count.
     pub fn informative(&self) -> usize {
-        self.measures.iter().filter(|s| s.informative).count()
+        let counts = |s: &&Score| s.informative && Family::STREETS.contains(&s.measure.family);
+        self.measures.iter().filter(counts).count()
     }
 }
 
-fn families_of_core(measures: &[Score]) -> BTreeMap<Family, f64> {
-    families(measures, |s| s.measure.core)
-}
-
-fn families(measures: &[Score], keep: impl Fn(&Score) -> bool) -> BTreeMap<Family, f64> {
+fn families_where(measures: &[Score], keep: impl Fn(&Score) -> bool) -> BTreeMap<Family, f64> {
     let of = |family: Family| {
         let own = measures.iter().filter(|s| s.informative && keep(s));
         let own = own.filter(|s| s.measure.family == family);
         Some((family, mean(own.filter_map(|s| s.score).map(|s| s.clamp(-1.0, 1.0)))?))
     };
-    Family::ALL.into_iter().filter_map(of).collect()
+    Family::STREETS.into_iter().chain(Family::BUILT).filter_map(of).collect()
 }
 
-fn families_mean(families: &BTreeMap<Family, f64>) -> Option<f64> {
-    mean(families.values().copied())
+fn mean_of(families: &BTreeMap<Family, f64>, which: &[Family]) -> Option<f64> {
+    mean(which.iter().filter_map(|f| families.get(f).copied()))
 }
 
 /// Mean; `None` of nothing.

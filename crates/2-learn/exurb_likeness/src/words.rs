@@ -31,7 +31,7 @@ const PATCHES: &str = "Pieces of the map of 512 m";
 
 /// Name, subject, more, less, unit, logarithms.
 #[rustfmt::skip]
-const TABLE: [Row; 30] = [
+const TABLE: [Row; 49] = [
     ("seg_length", STREETS, "are longer", "are shorter", "m", true),
     ("seg_sinuosity", STREETS, "wind more", "wind less", "", false),
     ("seg_curvature", STREETS, "bend more", "bend less", "° per 100 m", false),
@@ -62,6 +62,25 @@ const TABLE: [Row; 30] = [
     ("natural_street_length", "Streets that go on straight through junctions", "are longer", "are shorter", "m", true),
     ("patch_c2st_auc", PATCHES, "are told apart", "are told apart", "", false),
     ("patch_kid", PATCHES, "look different", "look different", "", false),
+    ("b_area", "Footprints", "are larger", "are smaller", "m²", true),
+    ("b_elongation", "Footprints", "are less elongated", "are more elongated", "", false),
+    ("b_rectangularity", "Footprints", "are more like rectangles", "are less like rectangles", "", false),
+    ("b_corners", "Footprints", "have more corners", "have fewer corners", "", false),
+    ("b_setback", "Buildings", "stand farther from the street", "stand nearer to the street", "m from its middle", false),
+    ("b_street_alignment", "Buildings", "are turned more against the street", "are more parallel or square to the street", "°", false),
+    ("b_nearest_building", "Buildings", "stand farther apart", "stand closer together", "m", false),
+    ("b_height", "Buildings", "are higher", "are lower", "m", false),
+    ("blk_coverage_gsi", "Blocks", "are covered more by buildings", "are covered less by buildings", "", false),
+    ("blk_buildings_per_ha", "Blocks", "hold more buildings", "hold fewer buildings", "per ha", false),
+    ("blk_far_fsi", "Blocks", "hold more floor space", "hold less floor space", "m² per m²", false),
+    ("blk_corners_built", "Corners of blocks", "are built on more often", "are built on less often", "", false),
+    ("blk_setback_variation", "Fronts along one side of a block", "jump more", "keep more to one line", "m", false),
+    ("parcel_area", "Parcels", "are larger", "are smaller", "m²", true),
+    ("parcel_frontage", "Parcels", "are wider at the street", "are narrower at the street", "m", false),
+    ("parcel_depth_ratio", "Parcels", "are deeper for their width", "are shallower for their width", "", false),
+    ("parcel_rectangularity", "Parcels", "are more like rectangles", "are less like rectangles", "", false),
+    ("parcel_buildings", "Parcels", "hold more buildings", "hold fewer buildings", "", false),
+    ("parcel_front_setback", "Buildings", "stand farther behind the front of their parcel", "stand nearer to the front of their parcel", "m", false),
 ];
 
 /// The words of a measure; its name where there are none.
@@ -83,8 +102,8 @@ mod tests {
 
     #[test]
     fn every_measure_has_words() {
-        for measure in crate::STREETS {
-            assert_ne!(words(&measure).subject, measure.name);
+        for measure in crate::STREETS.iter().chain(&crate::measures::BUILT) {
+            assert_ne!(words(measure).subject, measure.name);
         }
     }
 }

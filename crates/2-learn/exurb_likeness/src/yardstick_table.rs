@@ -27,7 +27,7 @@ impl Table {
             let [ceiling, floor, grid] = [d.ceiling, d.floor, d.grid].map(figure);
             out += &format!("{:<24} {ceiling:>8} {floor:>8} {grid:>8}\n", d.measure);
         }
-        let families: Vec<&str> = Family::ALL.iter().map(|f| f.name()).collect();
+        let families: Vec<&str> = Family::STREETS.iter().map(|f| f.name()).collect();
         out += &format!(
             "\n{:<32} {:>13} {:>6}  {}\n",
             "candidate",
@@ -40,7 +40,7 @@ impl Table {
                 let score = figure(row.families.get(f.name()).copied());
                 format!("{score:>width$}", width = f.name().len())
             };
-            let families: Vec<String> = Family::ALL.iter().map(family).collect();
+            let families: Vec<String> = Family::STREETS.iter().map(family).collect();
             let total = format!("{:.2} ({:.2})", row.total[0], row.total[1]);
             let core = figure(Some(row.core));
             out +=
@@ -230,6 +230,6 @@ fn row(candidate: &'static str, cards: Vec<&Scorecard>) -> Row {
         candidate,
         total: [total, variance.sqrt()],
         core: mean(cards.iter().filter_map(|c| c.core)).unwrap_or_default(),
-        families: Family::ALL.into_iter().filter_map(family).collect(),
+        families: Family::STREETS.into_iter().filter_map(family).collect(),
     }
 }

@@ -16,15 +16,21 @@
 //! | [`moving_windows`] | densities, order, meshedness, share of crossings of neighbourhoods |
 //! | [`mod@paths`] | reach, detour, betweenness |
 //! | [`natural_streets`] | streets that go on in each other |
+//! | [`buildings`], [`built_blocks`] | footprints, setbacks, heights; coverage, corners, fronts |
+//! | [`parcels`] | lots: size, frontage, access, how they are built on |
 
 pub mod bearings;
 pub mod block_shapes;
+pub mod buildings;
+pub mod built_blocks;
 pub mod info;
 mod info_text;
 pub mod junctions;
 pub mod moving_windows;
 pub mod natural_streets;
+mod nearest;
 pub mod network;
+pub mod parcels;
 pub mod paths;
 pub mod sample;
 pub mod segments;

@@ -3,7 +3,7 @@
 use exurb_geom::Frame;
 use rusqlite::{Connection, params};
 
-use crate::layers::{Column, GeometryType, Kind, Layer};
+use crate::layers::{GeometryType, Kind};
 
 /// `GPKG` in ASCII.
 pub const APPLICATION_ID: i32 = 0x4750_4B47;
@@ -121,15 +121,19 @@ fn escape_xml(text: &str) -> String {
 }
 
 /// Makes the table of a layer and its R-tree, and registers both.
-pub fn create_layer<T>(db: &Connection, layer: &Layer<T>) -> rusqlite::Result<()> {
-    let geometry = match layer.geometry {
+pub fn create_layer(
+    db: &Connection,
+    name: &str,
+    geometry: GeometryType,
+    columns: &[(&str, Kind)],
+) -> rusqlite::Result<()> {
+    let geometry = match geometry {
         GeometryType::Point => "POINT",
         GeometryType::LineString => "LINESTRING",
         GeometryType::Polygon => "POLYGON",
         GeometryType::Any => "GEOMETRY",
     };
-    let columns: String = layer.columns().map(|c| format!(", {}", definition(c))).collect();
-    let name = layer.name;
+    let columns: String = columns.iter().map(|c| format!(", {}", definition(*c))).collect();
     db.execute_batch(&format!(
         "CREATE TABLE {name} (fid INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, geom {geometry}\
          {columns});
@@ -143,14 +147,14 @@ pub fn create_layer<T>(db: &Connection, layer: &Layer<T>) -> rusqlite::Result<()
     ))
 }
 
-fn definition<T>(column: &Column<T>) -> String {
-    let kind = match column.kind {
+fn definition((name, kind): (&str, Kind)) -> String {
+    let kind = match kind {
         Kind::Boolean | Kind::Flag => "BOOLEAN",
         Kind::Integer => "INTEGER",
         Kind::Real => "REAL",
         Kind::Text => "TEXT",
     };
-    format!("\"{}\" {kind}", column.name)
+    format!("\"{name}\" {kind}")
 }
 
 /// The triggers that keep a layer's R-tree up to date when another program edits the file

@@ -10,9 +10,10 @@ use rusqlite::{Connection, ToSql, params};
 use super::schema;
 use crate::Error;
 use crate::beside::Beside;
-use crate::layers::{self, Layer, Streets, TargetRow};
+use crate::layers::{self, GeometryType, Kind, Layer, Streets, TargetRow};
 use crate::metadata;
 use crate::numbered::numbered;
+use crate::theme::Theme;
 use crate::value::Value;
 use crate::wkb::{self, Shape};
 
@@ -29,7 +30,8 @@ pub fn write_geopackage(city: &City, path: &Path) -> Result<(), Error> {
 /// [`write_geopackage`], of streets and intersections what `streets` says.
 pub fn write_geopackage_streets(city: &City, streets: Streets, path: &Path) -> Result<(), Error> {
     let (beside, _) = Beside::create(path)?;
-    write_database(city, streets, beside.path())
+    let numbered = numbered(city);
+    write_database(&numbered, beside.path(), |db| write_layers(db, &numbered, streets))
         .map_err(|source| Error::WriteDatabase { file: path.display().to_string(), source })?;
     forget_journals(path);
     beside.finish()
@@ -46,16 +48,40 @@ pub fn forget_journals(path: &Path) {
     }
 }
 
-fn write_database(city: &City, streets: Streets, path: &Path) -> rusqlite::Result<()> {
-    let city = numbered(city);
+/// Writes layers of figures on a city as one GeoPackage in the city's own coordinates, with what
+/// travels with the city. An existing file is replaced when the new one is whole.
+pub fn write_themes(city: &City, themes: &[Theme], path: &Path) -> Result<(), Error> {
+    let (beside, _) = Beside::create(path)?;
+    let write = |db: &Connection| themes.iter().try_for_each(|theme| write_theme(db, theme));
+    write_database(city, beside.path(), write)
+        .map_err(|source| Error::WriteDatabase { file: path.display().to_string(), source })?;
+    forget_journals(path);
+    beside.finish()
+}
+
+fn write_database(
+    city: &City,
+    path: &Path,
+    layers: impl Fn(&Connection) -> rusqlite::Result<()>,
+) -> rusqlite::Result<()> {
     let mut db = Connection::open(path)?;
     schema::prepare(&db)?;
     let transaction = db.transaction()?;
     schema::create_tables(&transaction, &city.frame)?;
-    schema::write_metadata(&transaction, &metadata::entries(&city))?;
-    write_layers(&transaction, &city, streets)?;
+    schema::write_metadata(&transaction, &metadata::entries(city))?;
+    layers(&transaction)?;
     transaction.commit()?;
     db.close().map_err(|(_, error)| error)
+}
+
+fn write_theme(db: &Connection, theme: &Theme) -> rusqlite::Result<()> {
+    let columns: Vec<(&str, Kind)> = theme.columns.iter().map(|name| (*name, Kind::Real)).collect();
+    let rows = theme.rows.iter().map(|row| (&row.values, Shape::of(&row.shape)));
+    write_rows(db, theme.name, theme.geometry, &columns, rows, figure)
+}
+
+fn figure<'a>(row: &'a &Vec<Option<f64>>, column: usize) -> Value<'a> {
+    row.get(column).copied().flatten().map_or(Value::Null, Value::Real)
 }
 
 fn write_layers(db: &Connection, city: &City, streets: Streets) -> rusqlite::Result<()> {
@@ -83,9 +109,24 @@ fn write_layer<'a, T: 'static, R: std::borrow::Borrow<T>>(
     layer: &Layer<T>,
     rows: impl IntoIterator<Item = (R, Shape<'a>)>,
 ) -> rusqlite::Result<()> {
-    schema::create_layer(db, layer)?;
-    let name = layer.name;
-    let holes: String = layer.columns().map(|_| ", ?").collect();
+    let columns: Vec<_> = layer.columns().collect();
+    let named: Vec<(&str, Kind)> = columns.iter().map(|c| (c.name, c.kind)).collect();
+    write_rows(db, layer.name, layer.geometry, &named, rows, |row, column| {
+        (columns[column].get)(row.borrow())
+    })
+}
+
+/// Writes rows of a layer, whose values `value` gives by row and column.
+fn write_rows<'a, R>(
+    db: &Connection,
+    name: &str,
+    geometry: GeometryType,
+    columns: &[(&str, Kind)],
+    rows: impl IntoIterator<Item = (R, Shape<'a>)>,
+    value: impl Fn(&R, usize) -> Value<'_>,
+) -> rusqlite::Result<()> {
+    schema::create_layer(db, name, geometry, columns)?;
+    let holes: String = columns.iter().map(|_| ", ?").collect();
     let mut insert = db.prepare(&format!("INSERT INTO {name} VALUES (?, ?{holes})"))?;
     let mut index = db.prepare(&format!("INSERT INTO rtree_{name}_geom VALUES (?, ?, ?, ?, ?)"))?;
     let mut blob = Vec::new();
@@ -94,8 +135,8 @@ fn write_layer<'a, T: 'static, R: std::borrow::Borrow<T>>(
         wkb::encode(shape, schema::LOCAL_SRS, &mut blob);
         insert.raw_bind_parameter(1, fid)?;
         insert.raw_bind_parameter(2, &blob)?;
-        for (column, place) in layer.columns().zip(3..) {
-            insert.raw_bind_parameter(place, (column.get)(row.borrow()))?;
+        for column in 0..columns.len() {
+            insert.raw_bind_parameter(column + 3, value(&row, column))?;
         }
         insert.raw_execute()?;
         let bounds = shape.bounds();

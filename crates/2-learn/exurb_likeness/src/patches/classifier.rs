@@ -18,19 +18,46 @@ const ROUNDS: u64 = 200;
 /// south and north halves. 0.5 = cannot tell, never below; 1 = always tells. `None` where a half
 /// holds too few patches.
 pub fn told_apart(a: &Patches, b: &Patches) -> Option<f64> {
-    let folds = [(0, true), (0, false), (1, true), (1, false)];
-    let areas: Vec<Option<f64>> =
-        folds.par_iter().map(|(axis, half)| fold(a, b, *axis, *half)).collect();
-    let areas: Vec<f64> = areas.into_iter().flatten().collect();
+    let areas = folds(a, b).map(|fold| area_under_curve(&fold.scores, &fold.is_b));
+    let areas: Vec<f64> = areas.collect();
     let mean = areas.iter().sum::<f64>() / areas.len() as f64;
     (!areas.is_empty()).then_some(mean.max(0.5))
 }
 
-fn fold(a: &Patches, b: &Patches, axis: usize, half: bool) -> Option<f64> {
-    let (train, train_is_b) = rows(a, b, axis, half)?;
-    let (test, test_is_b) = rows(a, b, axis, !half)?;
+/// How much every patch of `a` gives its city away: the mean score of the classifiers that were tried
+/// on it, higher for what `b` has not. 0 for a patch that was never tried.
+pub fn telling(a: &Patches, b: &Patches) -> Vec<f64> {
+    let mut sums = vec![(0.0, 0.0); a.halves.len()];
+    for fold in folds(a, b) {
+        for (row, score) in fold.rows_of_a.iter().zip(&fold.scores) {
+            sums[*row].0 -= score;
+            sums[*row].1 += 1.0;
+        }
+    }
+    sums.into_iter().map(|(sum, count)| if count > 0.0 { sum / count } else { 0.0 }).collect()
+}
+
+/// A classifier tried on one half of both cities.
+struct Fold {
+    /// Patches of `a` that it was tried on; their scores come first.
+    rows_of_a: Vec<usize>,
+    /// Higher for `b`.
+    scores: Vec<f64>,
+    is_b: Vec<bool>,
+}
+
+fn folds(a: &Patches, b: &Patches) -> impl Iterator<Item = Fold> {
+    let halves = [(0, true), (0, false), (1, true), (1, false)];
+    let found: Vec<Option<Fold>> =
+        halves.par_iter().map(|(axis, half)| fold(a, b, *axis, *half)).collect();
+    found.into_iter().flatten()
+}
+
+fn fold(a: &Patches, b: &Patches, axis: usize, half: bool) -> Option<Fold> {
+    let (train, trained_on) = Rows::of(a, b, axis, half)?;
+    let (test, tried_on) = Rows::of(a, b, axis, !half)?;
     let standard = Standard::of(&train)?;
-    let labels = Array1::from_iter(train_is_b.iter().map(|b| usize::from(*b)));
+    let labels = Array1::from_iter(trained_on.is_b().map(usize::from));
     let model = LogisticRegression::default()
         .alpha(PENALTY)
         .max_iterations(ROUNDS)
@@ -39,8 +66,35 @@ fn fold(a: &Patches, b: &Patches, axis: usize, half: bool) -> Option<f64> {
     let scores = standard.apply(test).dot(model.params());
     // The model calls one of the two labels positive.
     let sign = if model.labels().pos.class == 1 { 1.0 } else { -1.0 };
-    let scores: Vec<f64> = scores.iter().map(|s| s * sign).collect();
-    Some(area_under_curve(&scores, &test_is_b))
+    let scores = scores.iter().map(|s| s * sign).collect();
+    Some(Fold { is_b: tried_on.is_b().collect(), rows_of_a: tried_on.of_a, scores })
+}
+
+/// Numbers of the patches of both cities in one half.
+struct Rows {
+    of_a: Vec<usize>,
+    of_b: Vec<usize>,
+}
+
+impl Rows {
+    /// With their features, those of `a` first. `None` where a city has fewer than two there.
+    fn of(a: &Patches, b: &Patches, axis: usize, half: bool) -> Option<(Array2<f64>, Self)> {
+        let inside = |p: &Patches| -> Vec<usize> {
+            (0..p.halves.len()).filter(|i| p.halves[*i][axis] == half).collect()
+        };
+        let rows = Self { of_a: inside(a), of_b: inside(b) };
+        if rows.of_a.len() < 2 || rows.of_b.len() < 2 {
+            return None;
+        }
+        let chosen = |p: &Patches, rows: &[usize]| p.features.select(Axis(0), rows).mapv(f64::from);
+        let (a, b) = (chosen(a, &rows.of_a), chosen(b, &rows.of_b));
+        let both = ndarray::concatenate(Axis(0), &[a.view(), b.view()]).ok()?;
+        Some((both, rows))
+    }
+
+    fn is_b(&self) -> impl Iterator<Item = bool> + '_ {
+        self.of_a.iter().map(|_| false).chain(self.of_b.iter().map(|_| true))
+    }
 }
 
 /// Features in units of their spread, from their mean.
@@ -60,22 +114,6 @@ impl Standard {
     pub(super) fn apply(&self, rows: Array2<f64>) -> Array2<f64> {
         (rows - &self.mean) / &self.spread
     }
-}
-
-/// Features of the patches of both cities in one half, and which are of `b`. `None` where one has
-/// fewer than two there.
-fn rows(a: &Patches, b: &Patches, axis: usize, half: bool) -> Option<(Array2<f64>, Vec<bool>)> {
-    let inside = |p: &Patches| -> Vec<usize> {
-        (0..p.halves.len()).filter(|i| p.halves[*i][axis] == half).collect()
-    };
-    let (of_a, of_b) = (inside(a), inside(b));
-    if of_a.len() < 2 || of_b.len() < 2 {
-        return None;
-    }
-    let chosen = |p: &Patches, rows: &[usize]| p.features.select(Axis(0), rows).mapv(f64::from);
-    let both = ndarray::concatenate(Axis(0), &[chosen(a, &of_a).view(), chosen(b, &of_b).view()]);
-    let labels = of_a.iter().map(|_| false).chain(of_b.iter().map(|_| true)).collect();
-    Some((both.ok()?, labels))
 }
 
 /// Area under the receiver operating characteristic: the chance that a random positive scores higher

@@ -4,7 +4,7 @@ use exurb_geom::{Vec2, trig};
 use exurb_measure::Network;
 
 /// Metres a pixel.
-const PIXEL_M: f64 = 8.0;
+pub const PIXEL_M: f64 = 8.0;
 /// Standard deviation of the blur in pixels, and how far it reaches.
 const BLUR_PX: f64 = 0.8;
 const BLUR_REACH: usize = 3;

@@ -18,8 +18,8 @@ mod image;
 mod kernel;
 
 pub use classifier::area_under_curve;
-pub use classifier::told_apart;
+pub use classifier::{telling, told_apart};
 pub use dictionary::{Dictionary, Filters, LearnError};
-pub use features::{CANDIDATE, HELD_OUT, Patches};
-pub use image::Image;
+pub use features::{CANDIDATE, HELD_OUT, Patches, SIDE};
+pub use image::{Image, PIXEL_M};
 pub use kernel::kernel_distance;

@@ -3,15 +3,21 @@
 use std::path::{Path, PathBuf};
 
 use clap::{ArgMatches, Args, Command, FromArgMatches};
-use exurb_city::City;
+use exurb_city::{City, FeatureShape};
+use exurb_geom::GridPoint;
+use exurb_gis::theme::{GeometryType, Theme, ThemeRow};
 use exurb_likeness::comparison::{common_size, split};
-use exurb_likeness::{Document, Floor, Panel, Place, Reference, windows, yardstick_table};
-use exurb_measure::Info;
+use exurb_likeness::{
+    Document, Floor, Panel, Place, Reference, unlikely, windows, yardstick_table,
+};
+use exurb_measure::{Info, Network};
 use exurb_operation::Run;
 use exurb_recipe::Source;
+use exurb_report::{Column, Report};
 use serde_json::{Value, json};
 
 use crate::options::RunOptions;
+use crate::pending::Pending;
 use crate::problem::Problem;
 use crate::{job, report};
 
@@ -37,6 +43,13 @@ struct Options {
     /// rule against each of these cities
     #[arg(long, value_name = "CITY", num_args = 1.., conflicts_with_all = ["city", "with", "held_out", "floor"])]
     yardstick: Vec<PathBuf>,
+    /// Write the comparison as one page of HTML, with maps and distributions
+    #[arg(long, value_name = "FILE.html", conflicts_with = "yardstick")]
+    report: Option<PathBuf>,
+    /// Write where the city differs: how unlikely each of its blocks and junctions is under the
+    /// first example
+    #[arg(long, value_name = "FILE.gpkg", conflicts_with = "yardstick")]
+    map: Option<PathBuf>,
     #[command(flatten)]
     run: RunOptions,
 }
@@ -73,20 +86,90 @@ fn compare(city: &Path, options: &Options, panel: &Panel, run: &Run) -> Result<S
             held_out.len()
         )));
     }
+    // Before the long work: can the files be written?
+    let page = options.report.as_deref().map(Pending::new).transpose()?;
+    let map = options.map.as_deref().map(Pending::new).transpose()?;
     run.phase("comparing");
-    let mut documents = Vec::new();
+    let mut found = Vec::new();
     for (number, example) in examples.iter().enumerate() {
         let reference = reference(&candidate, example, held_out.get(number), &floor, panel);
         run.check()?;
         let likeness = reference.compare(&candidate, panel);
-        documents.push(Document::of(&reference, &likeness));
+        let document = Document::of(&reference, &likeness);
+        found.push((reference, likeness, document));
         run.check()?;
     }
     let info = Info::of(&candidate, examples.first());
+    if let Some(page) = page {
+        let columns: Vec<Column> = found
+            .iter()
+            .zip(&examples)
+            .enumerate()
+            .map(|(number, ((reference, likeness, document), example))| Column {
+                example,
+                held_out: held_out.get(number).unwrap_or(example),
+                reference,
+                likeness,
+                document,
+            })
+            .collect();
+        let report = Report { candidate: &candidate, info: &info, columns: &columns };
+        let html = exurb_report::to_html(&report).map_err(|e| page.problem(&e.to_string()))?;
+        page.write(html.as_bytes())?;
+        page.commit()?;
+    }
+    if let (Some(map), Some((reference, likeness, _))) = (map, found.first()) {
+        let themes = themes(&likeness.candidate.network, reference);
+        exurb_gis::write_themes(&candidate, &themes, map.beside())
+            .map_err(|e| map.problem(&e.to_string()))?;
+        map.commit()?;
+    }
+    let documents: Vec<Document> = found.into_iter().map(|(.., document)| document).collect();
     if options.run.json {
         return Ok(format!("{:#}", to_json(&candidate, &documents, &info)));
     }
     Ok(to_text(&candidate, &documents, &info))
+}
+
+/// The layers of the map of differences.
+fn themes(candidate: &Network, reference: &Reference) -> [Theme; 2] {
+    let example = [&reference.part.network, &reference.held_out];
+    let block = |b: unlikely::Block| ThemeRow {
+        values: [
+            b.unlikely,
+            Some(b.shape.area_m2),
+            Some(b.shape.phi),
+            Some(b.shape.aspect),
+            Some(b.shape.rectangularity),
+        ]
+        .to_vec(),
+        shape: FeatureShape::Polygon(b.polygon),
+    };
+    let junction = |j: unlikely::Junction| ThemeRow {
+        shape: FeatureShape::Point(GridPoint::round(j.at)),
+        values: [
+            j.unlikely,
+            Some(j.degree as f64),
+            Some(j.angles[0]),
+            Some(j.angles[1]),
+            Some(j.leg_m),
+        ]
+        .to_vec(),
+    };
+    [
+        Theme {
+            name: "blocks",
+            geometry: GeometryType::Polygon,
+            columns: vec!["unlikely", "area", "phi", "aspect", "rectangularity"],
+            rows: unlikely::blocks(candidate, &example).into_iter().map(block).collect(),
+        },
+        Theme {
+            name: "junctions",
+            geometry: GeometryType::Point,
+            columns: vec!["unlikely", "degree", "widest_angle", "narrowest_angle", "mean_leg"],
+            rows: unlikely::junctions(candidate, &example).into_iter().map(junction).collect(),
+        },
+    ]
 }
 
 /// The example, its parts and the floor, all windows as large as the smallest of them allows.

@@ -1,0 +1,35 @@
+//! Text safe to put into a page.
+
+/// Text with the characters that mean something to HTML replaced.
+pub fn text(raw: &str) -> String {
+    let mut out = String::with_capacity(raw.len());
+    for c in raw.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            c if c.is_control() => out.push(' '),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+/// Two decimals, or a dash.
+pub fn figure(value: Option<f64>) -> String {
+    value.map_or("–".to_owned(), |v| format!("{v:.2}"))
+}
+
+/// Hundredths, or a dash.
+pub fn percent(value: Option<f64>) -> String {
+    value.map_or("–".to_owned(), |v| format!("{:.0} %", 100.0 * v))
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn names_of_files_cannot_break_a_page() {
+        assert_eq!(super::text("<b>\"A&B\"\u{7}"), "&lt;b&gt;&quot;A&amp;B&quot; ");
+    }
+}

@@ -1,0 +1,49 @@
+//! Maps side by side: windows of one size at one scale, as pictures of a fixed number of pixels.
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use exurb_city::City;
+use exurb_geom::Bounds;
+use exurb_measure::network::rectangle;
+use exurb_plan::Options;
+
+use crate::html::text;
+use crate::{Error, Report};
+
+/// Pixels of all maps of a page together, so that it stays small.
+const ALL_PIXELS: f64 = 1.5e6;
+/// A map is at most this wide.
+const MOST_WIDTH_PX: f64 = 900.0;
+
+/// The candidate, then of every example its part and its held-out part.
+pub fn maps(report: &Report) -> Result<String, Error> {
+    let Some(first) = report.columns.first() else { return Ok(String::new()) };
+    let candidate =
+        ("the new city".to_owned(), report.candidate, first.likeness.candidate.network.window);
+    let mut shown = vec![candidate];
+    for column in report.columns {
+        let name = text(&column.document.example);
+        let part = column.reference.part.network.window;
+        shown.push((format!("{name}: the example"), column.example, part));
+        let unseen = column.reference.held_out.window;
+        shown.push((format!("{name}: its unseen part"), column.held_out, unseen));
+    }
+    let size = first.reference.size;
+    let each = ALL_PIXELS / shown.len() as f64;
+    let width_px = (each * size.x / size.y).sqrt().clamp(16.0, MOST_WIDTH_PX) as u32;
+    let mut out = "<div class=\"maps\">\n".to_owned();
+    for (title, city, window) in shown {
+        let data = picture(city, window, width_px)?;
+        out += &format!(
+            "<figure><img alt=\"{title}\" src=\"data:image/png;base64,{data}\">\
+             <figcaption>{title}</figcaption></figure>\n"
+        );
+    }
+    Ok(out + "</div>\n")
+}
+
+fn picture(city: &City, window: Bounds, width_px: u32) -> Result<String, Error> {
+    let cropped = City { target: rectangle(window), ..city.clone() };
+    let options = Options { width_px, caption: false, ..Options::default() };
+    Ok(STANDARD.encode(exurb_plan::to_png(&cropped, &options)?))
+}
