@@ -10,6 +10,7 @@
 //! | [`grid`] | the 1 mm grid and its exact predicates |
 //! | [`polyline`] | lengths, positions, curvature and distances of lines |
 //! | [`polygon`] | polygons with holes |
+//! | [`contour`] | areas of a grid of values below a threshold |
 //! | [`oriented_box`] | smallest enclosing rectangle |
 //! | [`rigid`] | motions that keep lengths |
 //! | [`split`] | cutting a polygon along a line |
@@ -36,9 +37,11 @@
 mod bounds;
 pub mod box_grid;
 mod cell_table;
+pub mod contour;
 mod convert;
 pub mod crs;
 pub mod grid;
+mod lattice;
 pub mod mean_value;
 pub mod offset;
 pub mod oriented_box;
