@@ -121,7 +121,8 @@ impl Terrain {
         let first = GridPoint::round(bounds.min);
         let cell_mm = (cell_m * 1000.0).round().clamp(1.0, f64::from(LIMIT_MM)) as u32;
         let size_mm = (bounds.max - first.to_m()) * 1000.0;
-        let count = |mm: f64| (mm / f64::from(cell_mm)).ceil().max(1.0) as usize + 1;
+        // A thousandth of a cell less does not need another one.
+        let count = |mm: f64| (mm / f64::from(cell_mm) - 0.001).ceil().max(1.0) as usize + 1;
         let (columns, rows) = (count(size_mm.x), count(size_mm.y));
         match columns.checked_mul(rows) {
             Some(n) if n <= MOST_POSTS => Ok((first, cell_mm, columns, rows)),

@@ -49,7 +49,7 @@ impl Terrain {
                 (Some(a), Some(b)) => (b - a) / 2.0,
                 (Some(a), None) => here - a,
                 (None, Some(b)) => b - here,
-                (None, None) => here - here,
+                (None, None) => 0.0,
             }
         };
         let (west, south) = (column.wrapping_sub(1), row.wrapping_sub(1));
