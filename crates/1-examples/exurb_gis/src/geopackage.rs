@@ -2,6 +2,7 @@
 
 mod read;
 mod schema;
+mod terrain;
 mod write;
 
 pub(crate) use read::read_database;

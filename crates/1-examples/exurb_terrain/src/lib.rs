@@ -13,6 +13,7 @@
 //! | [`Options`] | what a file may not say about itself |
 //! | `place` | raster → terrain |
 //! | `write` | terrain → files |
+//! | [`tile`] | tiles of rasters inside other files |
 //! | [`fuzz`] | what fuzzing calls |
 
 mod ascii;
@@ -30,6 +31,7 @@ mod png16;
 mod read;
 #[cfg(test)]
 mod tests;
+pub mod tile;
 mod write;
 
 pub use dem::{Affine, Dem, Place};

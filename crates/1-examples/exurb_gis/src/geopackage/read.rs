@@ -2,13 +2,14 @@
 
 use std::borrow::Cow;
 use std::path::Path;
+use std::sync::Arc;
 
 use exurb_city::{ImportOptions, Imported};
 use exurb_geom::{Crs, GridPoint, Vec2};
 use rusqlite::types::ValueRef;
 use rusqlite::{Connection, OpenFlags, OptionalExtension};
 
-use super::schema;
+use super::{schema, terrain};
 use crate::Error;
 use crate::assembly::Assembly;
 use crate::gathering::Gathering;
@@ -47,13 +48,16 @@ pub(crate) fn read_database(
     // A file is data: nothing in it is run, and pages that lie about their size are errors.
     db.execute_batch("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON;")
         .map_err(database)?;
-    let value = |key: &str| {
+    let value = |key: &str| -> Option<String> {
         let sql = format!("SELECT value FROM {} WHERE key = ?", schema::METADATA_TABLE);
         db.query_row(&sql, [key], |row| row.get(0)).optional().ok().flatten()
     };
     match metadata::read(value) {
         Some((frame, metadata)) => {
             let mut assembly = Assembly::new(file.to_owned(), frame, metadata);
+            let level = value(metadata::WATER_LEVEL).and_then(|level| level.parse().ok());
+            let ground = terrain::read(db, file)?;
+            assembly.terrain = ground.map(|ground| Arc::new(ground.with_water_level(level)));
             read_own(db, file, &mut assembly)?;
             assembly.finish(options)
         }
