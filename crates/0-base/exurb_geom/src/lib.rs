@@ -10,6 +10,7 @@
 //! | [`grid`] | the 1 mm grid and its exact predicates |
 //! | [`polyline`] | lengths, positions, curvature and distances of lines |
 //! | [`polygon`] | polygons with holes |
+//! | [`cells`] | a square grid, and which cells a polygon covers |
 //! | [`contour`] | areas of a grid of values below a threshold |
 //! | [`oriented_box`] | smallest enclosing rectangle |
 //! | [`rigid`] | motions that keep lengths |
@@ -37,6 +38,7 @@
 mod bounds;
 pub mod box_grid;
 mod cell_table;
+pub mod cells;
 pub mod contour;
 mod convert;
 pub mod crs;
@@ -62,6 +64,7 @@ pub mod voronoi;
 
 pub use bounds::Bounds;
 pub use box_grid::BoxGrid;
+pub use cells::{Cell, Cells};
 pub use crs::Crs;
 pub use glam::DVec2 as Vec2;
 pub use grid::GridPoint;

@@ -95,7 +95,10 @@ impl<'a> Document<'a> {
     fn streets(&mut self, graph: &StreetGraph) -> BTreeMap<(GridPoint, i32), i64> {
         let mut junctions = vec![0; graph.node_bound()];
         for (id, node) in graph.nodes() {
-            junctions[id.index()] = self.node(node.at, Vec::new());
+            // On flat ground nobody needs to be told the height.
+            let height = Some(node.data.z_m).filter(|_| self.city.terrain.is_some());
+            let tags = height.map(|z_m| ("ele", format!("{z_m:.1}")));
+            junctions[id.index()] = self.node(node.at, tags.into_iter().collect());
         }
         let mut at = BTreeMap::new();
         for (_, edge) in graph.edges() {

@@ -70,7 +70,7 @@ pub fn read(bytes: &[u8], file: &str, said: Said, options: &Options) -> Result<D
     }
     let said = Said { affine: head.affine(), ..said };
     let place = options.place(file, said, head.columns, head.rows)?;
-    Ok(Dem { file: file.to_owned(), columns: head.columns, heights, place })
+    Ok(Dem { file: file.to_owned(), columns: head.columns, heights, place, attribution: None })
 }
 
 fn read_head<'t>(

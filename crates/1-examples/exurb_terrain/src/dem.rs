@@ -1,4 +1,5 @@
-use exurb_geom::{Crs, LonLat};
+use exurb_city::Terrain;
+use exurb_geom::{Crs, Frame, LonLat};
 
 /// A raster of heights as its file has it.
 #[derive(Clone, Debug)]
@@ -11,6 +12,8 @@ pub struct Dem {
     pub heights: Vec<f32>,
     /// Where its pixels lie.
     pub place: Place,
+    /// Who is to be credited, where the file says so.
+    pub attribution: Option<String>,
 }
 
 /// Where the pixels of a raster lie.
@@ -72,6 +75,21 @@ impl Affine {
 }
 
 impl Dem {
+    /// The heights of a city file's terrain, to be laid under another city.
+    pub fn of(terrain: &Terrain, frame: &Frame, file: &str) -> Self {
+        let rows = terrain.heights().chunks_exact(terrain.columns());
+        let first = terrain.post(0, terrain.rows() - 1);
+        let affine = Affine::north_up(first.x, first.y, terrain.cell_m(), terrain.cell_m());
+        let crs = Crs::from_name(&frame.to_proj()).unwrap_or_else(Crs::wgs84);
+        Self {
+            file: file.to_owned(),
+            columns: terrain.columns(),
+            heights: rows.rev().flatten().copied().collect(),
+            place: Place::Georeferenced { affine, crs: crs.into() },
+            attribution: None,
+        }
+    }
+
     /// Number of rows.
     pub fn rows(&self) -> usize {
         self.heights.len().checked_div(self.columns).unwrap_or(0)

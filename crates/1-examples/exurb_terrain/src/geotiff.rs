@@ -16,6 +16,7 @@ use crate::geokeys::{GeoKeys, RASTER_TYPE};
 use crate::options::Said;
 use crate::{Dem, Error, Options, lzw, read::MOST_PIXELS};
 
+const COPYRIGHT: Tag = Tag::Unknown(33_432);
 const GDAL_METADATA: Tag = Tag::Unknown(42_112);
 /// `GTRasterTypeGeoKey`: coordinates are those of points, the middles of pixels.
 const PIXEL_IS_POINT: u16 = 2;
@@ -76,7 +77,8 @@ pub fn read(bytes: &[u8], file: &str, said: Said, options: &Options) -> Result<D
         return Err(Error::content(file, message));
     }
     let place = options.place(file, said, columns, rows)?;
-    Ok(Dem { file: file.to_owned(), columns, heights, place })
+    let attribution = ascii(&mut tiff, COPYRIGHT).filter(|text| !text.trim().is_empty());
+    Ok(Dem { file: file.to_owned(), columns, heights, place, attribution })
 }
 
 /// The missing value is written as a double; among singles it is one.

@@ -31,7 +31,7 @@ pub fn read(bytes: &[u8], file: &str, options: &Options) -> Result<Dem, Error> {
     let affine = corner(file).map(|(lon, lat)| Affine::north_up(lon, lat + 1.0, step, step));
     let said = Said { affine, crs: Some(Ok(Crs::wgs84())) };
     let place = options.place(file, said, side, side)?;
-    Ok(Dem { file: file.to_owned(), columns: side, heights, place })
+    Ok(Dem { file: file.to_owned(), columns: side, heights, place, attribution: None })
 }
 
 /// Longitude and latitude in a name such as `S01W079`.

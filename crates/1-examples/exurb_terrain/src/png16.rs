@@ -86,7 +86,12 @@ pub fn read(bytes: &[u8], file: &str, said: Said, options: &Options) -> Result<D
     let mut pixels = vec![0; size];
     reader.next_frame(&mut pixels).map_err(broken)?;
     let _ = reader.finish();
-    let own = description(reader.info());
+    let text = |keyword: &str| {
+        let chunk = reader.info().utf8_text.iter().find(|chunk| chunk.keyword == keyword)?;
+        chunk.get_text().ok()
+    };
+    let attribution = text("Copyright");
+    let own: Option<Description> = text(KEYWORD).and_then(|text| serde_json::from_str(&text).ok());
 
     let range = options.range_m.or(own.as_ref().map(range_of_zero));
     let [low, high] = range.ok_or_else(|| Error::Rangeless { file: file.to_owned() })?;
@@ -104,18 +109,13 @@ pub fn read(bytes: &[u8], file: &str, said: Said, options: &Options) -> Result<D
         crs: Some(Crs::from_name(&own.crs).ok_or(own.crs)),
     });
     let place = options.place(file, said, columns, rows)?;
-    Ok(Dem { file: file.to_owned(), columns, heights, place })
+    Ok(Dem { file: file.to_owned(), columns, heights, place, attribution })
 }
 
 /// Numbers of one or two bytes.
 fn values<const N: usize>(bytes: &[u8]) -> Vec<u16> {
     let number = |b: &[u8]| b.iter().fold(0, |n, byte| n << 8 | u16::from(*byte));
     bytes.chunks_exact(N).map(number).collect()
-}
-
-fn description(info: &png::Info<'_>) -> Option<Description> {
-    let chunk = info.utf8_text.iter().find(|chunk| chunk.keyword == KEYWORD)?;
-    serde_json::from_str(&chunk.get_text().ok()?).ok()
 }
 
 /// Heights of the values 0 and 65535.

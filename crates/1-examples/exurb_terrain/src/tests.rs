@@ -215,6 +215,8 @@ proptest! {
             dem.onto(&city.frame, bounds, None).unwrap()
         };
         prop_assert_eq!(&again(&to_geotiff(&city).unwrap(), "a.tif"), &terrain);
+        let same = Dem::of(&terrain, &city.frame, "city").onto(&city.frame, bounds, None);
+        prop_assert_eq!(&same.unwrap(), &terrain);
         let map = to_png(&city).unwrap();
         let back = again(&map.png, "a.png");
         prop_assert_eq!((back.first(), back.columns()), (terrain.first(), terrain.columns()));
@@ -256,8 +258,13 @@ fn pixels_finer_than_the_cells_are_averaged() {
     // Chequered square metres: the mean of black and white is all that a cell can say.
     let columns = 500;
     let heights = (0..columns * columns).map(|i| ((i % columns + i / columns) % 2) as f32 * 10.0);
-    let dem =
-        Dem { file: "chess".into(), columns, heights: heights.collect(), place: Place::Stretched };
+    let dem = Dem {
+        file: "chess".into(),
+        columns,
+        heights: heights.collect(),
+        place: Place::Stretched,
+        attribution: None,
+    };
     let bounds = Bounds { min: Vec2::splat(-250.0), max: Vec2::splat(250.0) };
     let terrain = dem.onto(&Frame::null_island(), bounds, Some(25.0)).unwrap();
     assert_eq!((terrain.columns(), terrain.cell_mm()), (21, 25_000));

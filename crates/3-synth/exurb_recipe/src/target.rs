@@ -9,13 +9,22 @@ use crate::format::Format;
 use crate::{Error, Size, Target, open};
 
 /// The empty city of a target: a rectangle lies in the first example's frame around its centre, the
-/// polygon of a file in a frame of its own, whose origin is the polygon's centre.
+/// polygon of a file in a frame of its own, whose origin is the polygon's centre. The target of a
+/// city file brings its ground: terrain and water.
 pub fn begin(target: &Target, first: Option<&City>, folder: &Path) -> Result<City, Error> {
     match target {
         Target::Size(size) => Ok(rectangle(*size, first)),
         Target::File(file) => {
-            let (frame, polygon) = read(file, None, folder)?;
-            Ok(City::empty(frame, polygon))
+            let path = open::locate(file, folder)?;
+            if open::format_of(&path)? == Format::GeoJson {
+                let (frame, polygon) = read(file, None, folder)?;
+                return Ok(City::empty(frame, polygon));
+            }
+            let given = open::open_city(&path, &ImportOptions::default())?.city;
+            let mut city = City::empty(given.frame, given.target);
+            (city.terrain, city.water) = (given.terrain, given.water);
+            city.metadata.credit(&given.metadata.attribution);
+            Ok(city)
         }
     }
 }

@@ -7,8 +7,10 @@ use exurb_city::City;
 use crate::problem::Problem;
 
 /// The layers that can be written alone.
-const LAYERS: [&str; 7] =
-    ["streets", "blocks", "parcels", "buildings", "features", "water", "land_use"];
+const LAYERS: [&str; 8] =
+    ["streets", "blocks", "parcels", "buildings", "features", "water", "land_use", TERRAIN];
+/// The layer that is a raster.
+pub const TERRAIN: &str = "terrain";
 
 /// Is there a layer of that name?
 pub fn check(name: &str) -> Result<(), Problem> {
@@ -32,6 +34,7 @@ pub fn alone(city: &City, name: &str) -> Result<City, Problem> {
         "parcels" => alone.parcels = Arc::clone(&city.parcels),
         "buildings" => alone.buildings = Arc::clone(&city.buildings),
         "features" => alone.features = Arc::clone(&city.features),
+        TERRAIN => alone.terrain = city.terrain.clone(),
         "water" => alone.water = Arc::clone(&city.water),
         _ => alone.land_use = Arc::clone(&city.land_use),
     }

@@ -24,12 +24,20 @@ pub fn is_perspective(export: &Export) -> bool {
     export.view.as_deref() == Some("3d")
 }
 
+/// Is it the terrain's height map, not a picture of it?
+pub fn is_height_map(export: &Export) -> bool {
+    export.layer.as_deref() == Some(layer::TERRAIN) && export.view.is_none()
+}
+
 /// Is there all that the options ask for?
 pub fn check(export: &Export, format: Format) -> Result<(), Problem> {
     let name = export.file.display();
     map(export)?;
     if let Some(layer) = &export.layer {
         layer::check(layer)?;
+    }
+    if format == Format::GeoTiff && export.layer.as_deref().is_some_and(|l| l != layer::TERRAIN) {
+        return Err(Problem::usage(format!("{name}: GeoTIFF takes the layer terrain alone")));
     }
     if is_perspective(export) && format != Format::Png {
         return Err(Problem::usage(format!(

@@ -2,10 +2,11 @@
 
 use std::sync::OnceLock;
 
-use exurb_geom::{Bounds, GridPoint, Polygon, Vec2, overlay, polyline};
+use exurb_geom::{Bounds, Cell, Cells, GridPoint, Polygon, Vec2, overlay, polyline};
 
-/// Cells are at least this wide.
-const LEAST_CELL_MM: i64 = 10_000;
+/// Cells are at least this wide. An odd number, so that the middle of a cell lies half a millimetre
+/// off the grid and no vertex is level with one.
+const LEAST_CELL_MM: u64 = 10_001;
 /// About this many cells at most.
 const MOST_CELLS: f64 = 1e6;
 /// No shore.
@@ -13,7 +14,7 @@ const NONE: u32 = u32::MAX;
 
 /// What a cell is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Cell {
+enum State {
     Dry,
     Wet,
     /// A shore runs through; the cell's middle is dry or wet.
@@ -25,12 +26,8 @@ enum Cell {
 /// Water areas over a box.
 #[derive(Debug)]
 pub struct Shores {
-    /// South-west corner. Middles of cells lie off the millimetre grid, so that no vertex is level
-    /// with one.
-    low: GridPoint,
-    cell_mm: i64,
-    columns: usize,
-    cells: Vec<Cell>,
+    cells: Cells,
+    states: Vec<State>,
     segments: Vec<(GridPoint, GridPoint)>,
     /// The segments that pass each cell: those from `starts[cell]` to `starts[cell + 1]`.
     passing: Vec<u32>,
@@ -42,30 +39,30 @@ pub struct Shores {
 impl Shores {
     /// The water of the polygons, which may overlap, as far as it reaches into `bounds`.
     pub fn of(water: &[&Polygon], bounds: Bounds) -> Self {
-        let near: Vec<&Polygon> =
-            water.iter().copied().filter(|p| p.bounds().intersects(bounds)).collect();
+        let near = water.iter().copied().filter(|p| p.bounds().intersects(bounds));
         // Joined, so that every shore has water on one side and land on the other.
-        let shores: Vec<(GridPoint, GridPoint)> =
-            overlay::union(near).iter().flat_map(|p| p.segments().collect::<Vec<_>>()).collect();
+        let areas = overlay::union(near);
         let size = (bounds.max - bounds.min) * 1000.0;
-        let fair = (size.x * size.y / MOST_CELLS).sqrt().ceil() as i64;
-        // Odd, so that the middle of a cell lies half a millimetre off the grid.
-        let cell_mm = fair.max(LEAST_CELL_MM) | 1;
-        let most = if shores.is_empty() { 0.0 } else { f64::INFINITY };
-        let count = |mm: f64| (mm / cell_mm as f64).ceil().min(most) as usize;
-        let (columns, rows) = (count(size.x), count(size.y));
-        let mut this = Self {
-            low: GridPoint::round(bounds.min),
-            cell_mm,
-            columns,
-            cells: vec![Cell::Dry; columns * rows],
-            segments: shores,
-            passing: Vec::new(),
-            starts: vec![0; columns * rows + 1],
-            nearest: OnceLock::new(),
-        };
-        this.fill_rows();
-        this.mark_shores();
+        let fair = (size.x * size.y / MOST_CELLS).sqrt().ceil() as u64;
+        let low = GridPoint::round(bounds.min).to_m();
+        let cell_m = (fair.max(LEAST_CELL_MM) | 1) as f64 / 1000.0;
+        let cells = Cells::over(Bounds { min: low, ..bounds }, cell_m);
+        let mut states = vec![State::Dry; cells.columns() * cells.rows()];
+        for ((column, row), cell) in areas.iter().flat_map(|area| cells.of(area)) {
+            let state = &mut states[row * cells.columns() + column];
+            *state = match (cell, *state) {
+                (Cell::Inside, _) => State::Wet,
+                // Areas do not overlap: one of them holds the middle, or none.
+                (Cell::Rim { middle }, State::Shore { middle_is_wet }) => {
+                    State::Shore { middle_is_wet: middle || middle_is_wet }
+                }
+                (Cell::Rim { middle }, _) => State::Shore { middle_is_wet: middle },
+            };
+        }
+        let segments = areas.iter().flat_map(|area| area.segments().collect::<Vec<_>>()).collect();
+        let (passing, starts, nearest) = (Vec::new(), Vec::new(), OnceLock::new());
+        let mut this = Self { cells, states, segments, passing, starts, nearest };
+        this.list_segments();
         this
     }
 
@@ -76,11 +73,12 @@ impl Shores {
 
     /// Is `p`, rounded to the millimetre, in water? Dry outside the box.
     pub fn is_wet(&self, p: Vec2) -> bool {
-        let p = GridPoint::round(p);
-        match self.cell_of(p).map(|i| (i, self.cells[i])) {
-            None | Some((_, Cell::Dry)) => false,
-            Some((_, Cell::Wet)) => true,
-            Some((i, Cell::Shore { middle_is_wet })) => middle_is_wet ^ self.is_across(p, i),
+        let p = GridPoint::round(p).to_m();
+        let Some(cell) = self.cell_of(p) else { return false };
+        match self.states[cell] {
+            State::Dry => false,
+            State::Wet => true,
+            State::Shore { middle_is_wet } => middle_is_wet ^ self.is_across(p, cell),
         }
     }
 
@@ -89,8 +87,7 @@ impl Shores {
         if self.is_empty() {
             return f64::INFINITY;
         }
-        let at = GridPoint::round(p);
-        let Some(cell) = self.cell_of(at) else { return self.distance_outside_m(p) };
+        let Some(cell) = self.cell_of(p) else { return self.distance_outside_m(p) };
         if self.is_wet(p) {
             return 0.0;
         }
@@ -100,136 +97,71 @@ impl Shores {
 
     /// Outside the box, from its edge.
     fn distance_outside_m(&self, p: Vec2) -> f64 {
-        let low = self.low.to_m();
-        let size =
-            Vec2::new(self.columns as f64, self.rows() as f64) * self.cell_mm as f64 / 1000.0;
-        let edge = p.clamp(low, low + size - 0.001);
+        let (low, high) = (self.cells.back(Vec2::ZERO), self.cells.back(self.cells.size()));
+        let edge = p.clamp(low, high - 0.001);
         self.distance_m(edge) + p.distance(edge)
     }
 
-    fn rows(&self) -> usize {
-        self.cells.len().checked_div(self.columns).unwrap_or(0)
+    fn cell_of(&self, p: Vec2) -> Option<usize> {
+        self.cells.at(p).map(|(column, row)| row * self.cells.columns() + column)
     }
 
-    fn cell_of(&self, p: GridPoint) -> Option<usize> {
-        let x = (i64::from(p.x) - i64::from(self.low.x)).div_euclid(self.cell_mm);
-        let y = (i64::from(p.y) - i64::from(self.low.y)).div_euclid(self.cell_mm);
-        let inside = (0..self.columns as i64).contains(&x) && (0..self.rows() as i64).contains(&y);
-        inside.then(|| y as usize * self.columns + x as usize)
-    }
-
-    /// The middle of a cell in millimetres.
-    fn middle_mm(&self, cell: usize) -> Vec2 {
-        let (column, row) = (cell % self.columns, cell / self.columns);
-        let low = Vec2::new(f64::from(self.low.x), f64::from(self.low.y));
-        low + (Vec2::new(column as f64, row as f64) + 0.5) * self.cell_mm as f64
+    fn middle(&self, cell: usize) -> Vec2 {
+        self.cells.middle((cell % self.cells.columns(), cell / self.cells.columns()))
     }
 
     /// Does an odd number of shores lie between `p` and the middle of its cell? Counted along the
     /// row of `p` up to the middle's column, then along that column.
-    fn is_across(&self, p: GridPoint, cell: usize) -> bool {
-        let middle = self.middle_mm(cell);
-        let p = Vec2::new(f64::from(p.x), f64::from(p.y));
+    fn is_across(&self, p: Vec2, cell: usize) -> bool {
+        let middle = self.middle(cell);
         let mut across = false;
         for id in &self.passing[self.starts[cell] as usize..self.starts[cell + 1] as usize] {
-            let (a, b) = self.ends_mm(*id);
+            let (a, b) = self.ends(*id);
             across ^= crosses_row(a, b, p.y, p.x, middle.x);
             across ^= crosses_row(turned(a), turned(b), middle.x, p.y, middle.y);
         }
         across
     }
 
-    fn ends_mm(&self, id: u32) -> (Vec2, Vec2) {
+    fn ends(&self, id: u32) -> (Vec2, Vec2) {
         let (a, b) = self.segments[id as usize];
-        let mm = |p: GridPoint| Vec2::new(f64::from(p.x), f64::from(p.y));
-        (mm(a), mm(b))
+        (a.to_m(), b.to_m())
     }
 
-    /// Cells whose middles lie in water, row by row between the shores.
-    fn fill_rows(&mut self) {
-        let mut crossings: Vec<Vec<f64>> = vec![Vec::new(); self.rows()];
-        for id in 0..self.segments.len() as u32 {
-            let (a, b) = self.ends_mm(id);
-            let row = |y: f64| (y - f64::from(self.low.y)) / self.cell_mm as f64 - 0.5;
-            let (from, to) = (row(a.y.min(b.y)).ceil().max(0.0), row(a.y.max(b.y)));
-            for row in (from as usize..).take_while(|r| *r as f64 <= to && *r < self.rows()) {
-                let y = self.middle_mm(row * self.columns).y;
-                crossings[row].push(a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y));
-            }
-        }
-        for (row, mut crossings) in crossings.into_iter().enumerate() {
-            crossings.sort_by(f64::total_cmp);
-            let mut passed = 0;
-            for column in 0..self.columns {
-                let cell = row * self.columns + column;
-                let x = self.middle_mm(cell).x;
-                passed += crossings[passed..].iter().take_while(|c| **c < x).count();
-                if !passed.is_multiple_of(2) {
-                    self.cells[cell] = Cell::Wet;
-                }
-            }
-        }
-    }
-
-    /// Cells that a shore runs through, or comes within a millimetre of.
-    fn mark_shores(&mut self) {
+    /// Lists the segments that pass each cell.
+    fn list_segments(&mut self) {
         let mut passed: Vec<(usize, u32)> = Vec::new();
         for id in 0..self.segments.len() as u32 {
-            passed.extend(self.cells_along(id).into_iter().map(|cell| (cell, id)));
+            let (a, b) = self.ends(id);
+            let columns = self.cells.columns();
+            self.cells.along(a, b, |(column, row)| passed.push((row * columns + column, id)));
         }
         passed.sort_unstable();
-        for (cell, _) in &passed {
-            let middle_is_wet =
-                matches!(self.cells[*cell], Cell::Wet | Cell::Shore { middle_is_wet: true });
-            self.cells[*cell] = Cell::Shore { middle_is_wet };
-            self.starts[cell + 1] += 1;
-        }
+        self.starts = vec![0; self.states.len() + 1];
+        passed.iter().for_each(|(cell, _)| self.starts[cell + 1] += 1);
         for cell in 1..self.starts.len() {
             self.starts[cell] += self.starts[cell - 1];
         }
         self.passing = passed.into_iter().map(|(_, id)| id).collect();
     }
 
-    /// The cells that a segment passes: in each column the rows between its ends there.
-    fn cells_along(&self, id: u32) -> Vec<usize> {
-        let (a, b) = self.ends_mm(id);
-        let (a, b) = if a.x <= b.x { (a, b) } else { (b, a) };
-        let low = Vec2::new(f64::from(self.low.x), f64::from(self.low.y));
-        let cell = self.cell_mm as f64;
-        let range = |from: f64, to: f64, count: usize| {
-            let first = ((from - 1.0) / cell).floor().max(0.0) as usize;
-            let last = ((to + 1.0) / cell).floor();
-            first..if last < 0.0 { 0 } else { (last as usize + 1).min(count) }
-        };
-        let mut out = Vec::new();
-        for column in range(a.x - low.x, b.x - low.x, self.columns) {
-            let (west, east) = (low.x + column as f64 * cell, low.x + (column + 1) as f64 * cell);
-            let y_at =
-                |x: f64| a.y + (b.y - a.y) * ((x - a.x) / (b.x - a.x).max(1.0)).clamp(0.0, 1.0);
-            let (p, q) = if b.x - a.x < 1.0 { (a.y, b.y) } else { (y_at(west), y_at(east)) };
-            let rows = range(p.min(q) - low.y, p.max(q) - low.y, self.rows());
-            out.extend(rows.map(|row| row * self.columns + column));
-        }
-        out
-    }
-
     /// For every cell the shore nearest to its middle, handed on from neighbour to neighbour: four
-    /// sweeps over the grid and back.
+    /// sweeps over the grid.
     fn nearest_shores(&self) -> Vec<u32> {
-        let (columns, rows) = (self.columns, self.rows());
+        let (columns, rows) = (self.cells.columns(), self.cells.rows());
         let mut nearest = vec![NONE; columns * rows];
         let mut known_m = vec![f64::INFINITY; columns * rows];
         let mut offer = |nearest: &mut Vec<u32>, cell: usize, id: u32| {
             if id != NONE && nearest[cell] != id {
-                let distance = self.segment_distance_m(id, self.middle_mm(cell) / 1000.0);
+                let distance = self.segment_distance_m(id, self.middle(cell));
                 if distance < known_m[cell] {
                     (known_m[cell], nearest[cell]) = (distance, id);
                 }
             }
         };
-        // Those that pass within reach of the box; others could only be nearest from outside it.
-        for id in 0..self.segments.len() as u32 {
-            self.cells_along(id).into_iter().for_each(|cell| offer(&mut nearest, cell, id));
+        for cell in 0..columns * rows {
+            let passing = self.starts[cell] as usize..self.starts[cell + 1] as usize;
+            self.passing[passing].iter().for_each(|id| offer(&mut nearest, cell, *id));
         }
         let steps = [(-1_isize, 0_isize), (0, -1), (-1, -1), (1, -1)];
         for sweep in 0..4 {
@@ -255,8 +187,8 @@ impl Shores {
         if id == NONE {
             return f64::INFINITY;
         }
-        let (a, b) = self.segments[id as usize];
-        polyline::nearest_on_segment(a.to_m(), b.to_m(), p).0.distance(p)
+        let (a, b) = self.ends(id);
+        polyline::nearest_on_segment(a, b, p).0.distance(p)
     }
 }
 

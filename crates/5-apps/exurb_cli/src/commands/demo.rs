@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 use exurb_recipe::{Export, Recipe, Registry, Source, Step, builtin};
 
-use crate::options::{ExampleOptions, RunOptions, TargetOptions};
+use crate::options::{ExampleOptions, RunOptions, TargetOptions, TerrainOptions};
 use crate::output::{self, Outputs};
 use crate::pending::Pending;
 use crate::problem::Problem;
@@ -29,6 +29,8 @@ struct Options {
     examples: ExampleOptions,
     #[command(flatten)]
     target: TargetOptions,
+    #[command(flatten)]
+    terrain: TerrainOptions,
     #[command(flatten)]
     run: RunOptions,
 }
@@ -98,6 +100,7 @@ fn recipe(options: &Options) -> Recipe {
     Recipe {
         seed: options.seed,
         target: Some(options.target.target()),
+        terrain: options.terrain.source(),
         examples,
         steps: STEPS.into_iter().map(Step::new).collect(),
         exports,
