@@ -9,6 +9,8 @@
 //! | `fuzz [TARGET] [SECONDS]` | feeds the readers with broken files |
 //! | `arrows` | crates use only what stands below them |
 //! | `maps` | grows a city from every shared map and writes docs/maps.md |
+//! | `likeness [OPTION ...]` | scores what is grown from every shared map; `--inside` tunes |
+//! | `panel` | measures the built-in panel of `exurb compare` anew |
 //! | `licences` | every dependency has a licence on the list |
 //!
 //! Exit status: 0 done, 1 the task failed, 2 wrong usage.
@@ -20,6 +22,7 @@ mod bench;
 mod check;
 mod fuzz;
 mod licences;
+mod likeness;
 mod maps;
 mod metadata;
 mod shell;
@@ -29,7 +32,8 @@ mod tools;
 use std::process::ExitCode;
 
 const USAGE: &str = "usage: cargo xtask check | test | bless | bench [STAGE] | \
-                     fuzz [TARGET] [SECONDS] | maps | arrows | licences";
+                     fuzz [TARGET] [SECONDS] | maps | likeness [OPTION ...] | panel | \
+                     arrows | licences";
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
@@ -42,6 +46,8 @@ fn main() -> ExitCode {
         ["bench", stage] => bench::run(Some(stage)),
         ["fuzz", ref rest @ ..] => fuzz::run(rest),
         ["maps"] => maps::run(),
+        ["likeness", ref options @ ..] => likeness::run(options),
+        ["panel"] => likeness::panel(),
         ["arrows"] => arrows::run(),
         ["licences"] => licences::run(),
         _ => {

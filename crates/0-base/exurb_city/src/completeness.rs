@@ -15,6 +15,11 @@ const MOST_LENGTH_M: f64 = 5000.0;
 /// 17 known to be complete have 0.67 to 1.00, the 31 others at most 0.46.
 pub const COMPLETE_SHARE: f64 = 0.55;
 
+/// Are the buildings complete enough to learn coverage and empty parcels from?
+pub fn is_complete(streets: &StreetGraph, buildings: &[Building]) -> bool {
+    built_share(streets, buildings) >= COMPLETE_SHARE
+}
+
 /// Share of the length of local streets, counted on both sides, that has a building within about
 /// 50 m: points 25 m beside the street look into their own and the eight cells of 25 m around.
 /// O(street length + building area).

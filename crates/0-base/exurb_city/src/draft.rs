@@ -20,9 +20,13 @@ pub struct Draft {
     pub frame: Frame,
     /// Where the data are complete, as the file declares it; `None` when it does not.
     pub extent: Option<Polygon>,
+    /// What runs past the extent belongs to the city, too, as in files of our own: it is cut only
+    /// where a part is asked for.
+    pub runs_past: bool,
     /// Streets of every role.
     pub streets: StreetMap,
-    /// Ends where a street breaks off because the file lacks its next node: no dead ends.
+    /// Ends where a street breaks off because the file lacks its next node, or says that it runs
+    /// on: no dead ends.
     pub broken_ends: Vec<GridPoint>,
     /// Buildings and parts.
     pub buildings: Vec<Building>,
@@ -76,6 +80,9 @@ pub enum DraftError {
     /// There is nothing in the part to keep.
     #[error("nothing lies inside {0}; choose another part of the map")]
     Empty(String),
+    /// There is nothing at all.
+    #[error("it holds no streets, buildings or areas that exurb knows")]
+    Nothing,
 }
 
 impl Draft {
@@ -84,6 +91,7 @@ impl Draft {
         Self {
             frame,
             extent: None,
+            runs_past: false,
             streets: StreetMap::default(),
             broken_ends: Vec::new(),
             buildings: Vec::new(),
@@ -100,13 +108,17 @@ impl Draft {
     /// than the buildings beside them leave room; 4 blocks; 5 what lies in which block; 6 what blocks
     /// are used for.
     ///
-    /// Streets are cut at the target's edge, other ways lose the segments outside, buildings and
+    /// Unless all of it belongs to the city, streets are cut at the target's edge, other ways lose the segments outside, buildings and
     /// parcels stay where their centroid lies inside, areas and lines are clipped. Because ways
     /// come whole, nothing inside depends on what is dropped.
     pub fn assemble(mut self, options: &ImportOptions) -> Result<Imported, DraftError> {
         let target = self.target(options)?;
-        cut::cut(&mut self, &target, options.with_other);
-        let derive = Derive { with_other: options.with_other, area: Some(target.clone()) };
+        let is_cut = !self.runs_past || options.bbox.is_some() || options.part.is_some();
+        if is_cut {
+            cut::cut(&mut self, &target, options.with_other);
+        }
+        let area = is_cut.then(|| target.clone());
+        let derive = Derive { with_other: options.with_other, area };
         let mut streets = street_graph::derive(&self.streets, &derive);
         mark_broken_ends(&mut streets, self.broken_ends);
         assign_levels(&mut streets, &Hierarchy::default());
@@ -130,8 +142,7 @@ impl Draft {
         }
         let mut city = City::empty(self.frame, target);
         city.metadata = self.metadata;
-        city.metadata.buildings_complete =
-            completeness::built_share(&streets, &self.buildings) >= completeness::COMPLETE_SHARE;
+        city.metadata.buildings_complete = completeness::is_complete(&streets, &self.buildings);
         city.streets = Arc::new(streets);
         let other = |w: &crate::Way| !options.with_other && w.street.role() == Role::Other;
         city.other_ways = Arc::new(self.streets.ways.into_iter().filter(other).collect());
@@ -152,7 +163,7 @@ impl Draft {
     /// The extent, the part of it inside the box asked for, and the half asked for of the densest
     /// square of that.
     fn target(&self, options: &ImportOptions) -> Result<Polygon, DraftError> {
-        let mut target = self.area().ok_or_else(|| empty("the file"))?;
+        let mut target = self.area().ok_or(DraftError::Nothing)?;
         if let Some([sw, ne]) = options.bbox {
             let name = format!("the box {},{},{},{}", sw.lon, sw.lat, ne.lon, ne.lat);
             let asked = self.frame.rectangle_inside(sw, ne).ok_or_else(|| empty(&name))?;
@@ -160,7 +171,9 @@ impl Draft {
             target = common.next().ok_or_else(|| empty(&name))?;
         }
         if let Some(part) = options.part {
-            let square = densest_square::densest_square(&self.streets.ways, target.bounds());
+            let counted = self.streets.ways.iter().filter(|w| w.street.role() != Role::Other);
+            let lines = counted.map(|w| &w.line[..]);
+            let square = densest_square::densest_square(lines, target.bounds());
             let half = rectangle(densest_square::half(square, part));
             let mut common =
                 half.into_iter().flat_map(|half| overlay::intersection(&half, &target));

@@ -18,6 +18,7 @@
 //! | [`land`] | what methods ask of the ground: height, slope, wet or dry |
 //! | [`hierarchy`] | levels of streets, and strokes |
 //! | [`mod@laws`] | what every city keeps, and its likeness gates |
+//! | [`densest_square`] | the window that stands for a city in comparisons |
 //! | [`Edit`] | what an operation changes |
 
 pub mod area;
@@ -26,7 +27,7 @@ pub mod building;
 mod city;
 pub mod completeness;
 mod cut;
-mod densest_square;
+pub mod densest_square;
 mod draft;
 mod edit;
 mod facades;

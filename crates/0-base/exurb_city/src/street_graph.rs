@@ -198,6 +198,25 @@ pub fn subgraph(graph: &StreetGraph, keep: impl Fn(EdgeId, &Street) -> bool) -> 
     out.compacted()
 }
 
+/// Dead ends this near the border of an area were cut there, whether they say so or not, in metres.
+const BORDER_M: f64 = 1.0;
+
+/// Marks the ends within a metre of the area's border as cut.
+pub fn mark_ends_on_border<E: Clone>(graph: &mut Graph<Junction, E>, area: &Polygon) {
+    let ends: Vec<NodeId> = graph
+        .nodes()
+        .filter(|(id, node)| {
+            graph.degree(*id) == 1
+                && !node.data.cut
+                && area.boundary_distance_m(node.at.to_m()) < BORDER_M
+        })
+        .map(|(id, _)| id)
+        .collect();
+    for id in ends {
+        graph.node_mut(id).data.cut = true;
+    }
+}
+
 /// Is the node an intersection: not of degree 2? (Dead ends and cut ends are, changes of layer or
 /// class are not.)
 pub fn is_intersection(graph: &StreetGraph, node: NodeId) -> bool {

@@ -5,11 +5,14 @@ use geo::{Coord, LineString};
 use crate::{GridPoint, Polygon, Vec2};
 
 pub fn to_geo(polygon: &Polygon) -> geo::Polygon<f64> {
-    let ring = |r: &[GridPoint]| LineString(r.iter().map(|p| coord(p.to_m())).collect());
     geo::Polygon::new(
-        ring(polygon.exterior()),
-        polygon.interiors().iter().map(|r| ring(r)).collect(),
+        ring_to_geo(polygon.exterior()),
+        polygon.interiors().iter().map(|r| ring_to_geo(r)).collect(),
     )
+}
+
+pub fn ring_to_geo(ring: &[GridPoint]) -> LineString<f64> {
+    LineString(ring.iter().map(|p| coord(p.to_m())).collect())
 }
 
 pub fn line_to_geo(line: &[Vec2]) -> LineString<f64> {

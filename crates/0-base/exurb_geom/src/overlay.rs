@@ -6,7 +6,7 @@
 use geo::{BooleanOps, Validation};
 
 use crate::plain::is_plainly_valid;
-use crate::{Polygon, convert};
+use crate::{GridPoint, Polygon, convert};
 
 /// What lies in `a` and in `b`.
 pub fn intersection(a: &Polygon, b: &Polygon) -> Vec<Polygon> {
@@ -51,8 +51,18 @@ pub fn repair(polygon: &Polygon) -> Vec<Polygon> {
     if is_valid(polygon) {
         return vec![polygon.clone()];
     }
+    let rings: Vec<Vec<GridPoint>> = polygon.rings().map(<[GridPoint]>::to_vec).collect();
+    covered(&rings)
+}
+
+/// The valid polygons that closed rings cover together by the even-odd rule, whatever they cross
+/// and whichever way they turn.
+pub fn covered(rings: &[Vec<GridPoint>]) -> Vec<Polygon> {
+    let line = |ring: &Vec<GridPoint>| convert::ring_to_geo(ring);
+    let Some((outer, holes)) = rings.split_first() else { return Vec::new() };
+    let all = geo::Polygon::new(line(outer), holes.iter().map(line).collect());
     let empty = geo::MultiPolygon::<f64>(Vec::new());
-    let covered = geo::MultiPolygon(vec![convert::to_geo(polygon)]).union(&empty);
+    let covered = geo::MultiPolygon(vec![all]).union(&empty);
     convert::from_geo(covered).into_iter().filter(is_valid).collect()
 }
 
@@ -64,7 +74,6 @@ pub fn is_valid(polygon: &Polygon) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::GridPoint;
 
     fn square(x: f64, y: f64, side: f64) -> Polygon {
         Polygon::rectangle(GridPoint::m(x, y), GridPoint::m(x + side, y + side))
@@ -95,5 +104,10 @@ mod tests {
             Polygon::new(ring.map(|(x, y)| GridPoint::m(x, y)).to_vec(), vec![]).expect("area");
         assert!(!bow.is_valid());
         assert_eq!(repair(&bow).len(), 2);
+        // With wings of one size its signed area is none, and still it covers something.
+        let even = [(0.0, 0.0), (10.0, 10.0), (10.0, 0.0), (0.0, 10.0)];
+        let even = even.map(|(x, y)| GridPoint::m(x, y)).to_vec();
+        assert!(Polygon::new(even.clone(), vec![]).is_none());
+        assert_eq!(area(&covered(&[even])), 50.0);
     }
 }

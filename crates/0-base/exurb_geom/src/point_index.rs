@@ -1,6 +1,6 @@
 //! Points near a point, while points come and go: a uniform grid, as in [`crate::segment_index`].
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use crate::Vec2;
 
@@ -8,13 +8,13 @@ use crate::Vec2;
 #[derive(Clone, Debug)]
 pub struct PointIndex {
     cell_m: f64,
-    cells: HashMap<(i32, i32), Vec<(u32, Vec2)>>,
+    cells: FxHashMap<(i32, i32), Vec<(u32, Vec2)>>,
 }
 
 impl PointIndex {
     /// An empty index with square cells of `cell_m`, best near the usual search radius.
     pub fn new(cell_m: f64) -> Self {
-        Self { cell_m, cells: HashMap::new() }
+        Self { cell_m, cells: FxHashMap::default() }
     }
 
     /// Adds `p` as `id`.

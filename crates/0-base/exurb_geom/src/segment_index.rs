@@ -4,7 +4,7 @@
 //! segments near a candidate street millions of times and inserts in between; a grid answers in a
 //! few list look-ups where a dynamic R-tree walks and rebalances (measured in `docs/performance.md`).
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use crate::{Bounds, Vec2};
 
@@ -12,7 +12,7 @@ use crate::{Bounds, Vec2};
 #[derive(Clone, Debug)]
 pub struct SegmentIndex {
     cell_m: f64,
-    cells: HashMap<(i32, i32), Vec<Entry>>,
+    cells: FxHashMap<(i32, i32), Vec<Entry>>,
     len: usize,
 }
 
@@ -30,7 +30,7 @@ pub struct Entry {
 impl SegmentIndex {
     /// An empty index with square cells of `cell_m`, best near the usual length of a segment.
     pub fn new(cell_m: f64) -> Self {
-        Self { cell_m, cells: HashMap::new(), len: 0 }
+        Self { cell_m, cells: FxHashMap::default(), len: 0 }
     }
 
     /// Number of segments.

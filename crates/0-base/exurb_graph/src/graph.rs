@@ -284,6 +284,7 @@ impl<N, E> Graph<N, E> {
 
     /// Total length of all edges in metres.
     pub fn length_m(&self) -> f64 {
-        self.edges().map(|(_, e)| e.length_m()).sum()
+        // Not `sum`, whose nothing is -0.
+        self.edges().fold(0.0, |sum, (_, e)| sum + e.length_m())
     }
 }

@@ -23,6 +23,11 @@ pub trait Operation {
         run: &Run,
     ) -> Result<Self::Learned, Failure>;
 
+    /// What was learned, in figures for people; null where there is nothing to tell.
+    fn describe(_learned: &Self::Learned) -> Value {
+        Value::Null
+    }
+
     /// Edits `city` inside `scope`.
     fn edit(
         city: &City,
@@ -87,6 +92,8 @@ pub trait AnyOperation: Send + Sync {
     fn schema(&self) -> Value;
     /// Checks a parameter document without running.
     fn check(&self, params: &Value) -> Result<(), Failure>;
+    /// Learns with default parameters and describes what was learned.
+    fn lesson(&self, examples: &[Example], run: &Run) -> Result<Value, Failure>;
     /// Learns, edits and applies the edit.
     fn run(
         &self,
@@ -123,6 +130,11 @@ impl<O: Operation> AnyOperation for Erased<O> {
 
     fn check(&self, params: &Value) -> Result<(), Failure> {
         Self::parse(params.clone()).map(|_| ())
+    }
+
+    fn lesson(&self, examples: &[Example], run: &Run) -> Result<Value, Failure> {
+        let params = Self::parse(Value::Object(Default::default()))?;
+        Ok(O::describe(&O::learn(examples, &params, &run.named(&O::CARD.name()))?))
     }
 
     fn run(

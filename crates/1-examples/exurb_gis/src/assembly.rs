@@ -1,6 +1,6 @@
 //! A city out of the rows of its own file, whatever the format.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use exurb_city::{
@@ -32,8 +32,8 @@ pub struct Assembly {
     pub terrain: Option<Arc<Terrain>>,
 }
 
-/// A street's line may end this far from its intersections: GeoJSON rounds to centimetres. A line
-/// farther off was drawn by hand.
+/// A street's line may end this far from its intersections: other programs round to centimetres. A
+/// line farther off was drawn by hand.
 const END_TOLERANCE_M: f64 = 0.05;
 
 /// Why a row is none of its layer.
@@ -120,7 +120,8 @@ impl Assembly {
         if self.was_drawn_in() {
             let mut imported = self.derive_anew(options)?;
             imported.warnings.push(
-                "streets were drawn or moved outside exurb: noded them and derived the blocks anew"
+                "streets were drawn, moved or removed outside exurb: noded them and derived the \
+                 blocks anew"
                     .to_owned(),
             );
             return Ok(imported);
@@ -151,7 +152,15 @@ impl Assembly {
         self.intersections.iter().enumerate().map(|(i, (row, _))| (row.id, i)).collect()
     }
 
+    /// Did another program draw, move or remove streets?
     fn was_drawn_in(&self) -> bool {
+        let streets: BTreeSet<u32> = self.streets.iter().map(|(row, _)| row.id).collect();
+        let mut sides = self.blocks.iter().flat_map(|b| b.sides.iter().chain(&b.dead_ends));
+        sides.any(|side| !streets.contains(&(side.0 + 1))) || self.ends_elsewhere()
+    }
+
+    /// Does a street of the graph end elsewhere than at its intersections?
+    fn ends_elsewhere(&self) -> bool {
         let nodes = self.nodes();
         let at = |id: u32| nodes.get(&id).map(|i| self.intersections[*i].1);
         self.streets.iter().any(|(row, line)| {
@@ -167,6 +176,9 @@ impl Assembly {
     fn derive_anew(self, options: &ImportOptions) -> Result<Imported, Error> {
         let mut draft = Draft::new(self.frame);
         draft.extent = self.target;
+        draft.runs_past = true;
+        let cut = self.intersections.iter().filter(|(row, _)| row.junction.cut);
+        draft.broken_ends = cut.map(|(_, at)| *at).collect();
         draft.streets.ways =
             self.streets.into_iter().zip(1..).map(|((row, line), id)| way(row, line, id)).collect();
         draft.buildings = self.buildings;

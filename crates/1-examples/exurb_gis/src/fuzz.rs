@@ -4,7 +4,7 @@
 use exurb_city::ImportOptions;
 use rusqlite::{Connection, MAIN_DB};
 
-use crate::{geojson, geopackage};
+use crate::{geojson, geopackage, target};
 
 /// Reads bytes as a GeoPackage.
 pub fn geopackage(bytes: &[u8]) {
@@ -22,7 +22,7 @@ pub fn geojson(bytes: &[u8]) {
 
 /// Reads bytes as a target.
 pub fn target(bytes: &[u8]) {
-    let _ = geojson::read_target_stream(bytes, "bytes", None);
+    let _ = geojson::outlines(bytes, "bytes").and_then(|o| target::settle(o, "bytes", None));
 }
 
 #[cfg(test)]

@@ -28,6 +28,13 @@ impl Geometry {
         }
     }
 
+    /// The polygons among [`Geometry::into_parts`].
+    pub fn into_polygons(self) -> Vec<Self> {
+        let mut parts = self.into_parts();
+        parts.retain(|part| matches!(part, Self::Polygon(_)));
+        parts
+    }
+
     /// All positions, to change or look at; stops at the first `false`, which it returns.
     pub fn all(&mut self, mut visit: impl FnMut(&mut Position) -> bool) -> bool {
         self.visit(&mut visit)

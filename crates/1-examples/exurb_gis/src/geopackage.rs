@@ -1,13 +1,15 @@
 //! GeoPackage both ways.
 
+mod outlines;
 mod read;
 mod schema;
 mod terrain;
 mod write;
 
+pub(crate) use outlines::{is_geopackage, outlines};
 pub(crate) use read::read_database;
 pub use read::read_geopackage;
-pub use write::write_geopackage;
+pub use write::{forget_journals, write_geopackage, write_geopackage_streets};
 
 #[cfg(test)]
 mod tests;

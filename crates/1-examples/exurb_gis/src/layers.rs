@@ -98,6 +98,23 @@ impl<T> Layer<T> {
     }
 }
 
+/// What of the street graph to write: its edges, its nodes, or both. A file without one of them is
+/// no city to come back to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Streets {
+    /// The layer `streets`.
+    pub lines: bool,
+    /// The layer `intersections`.
+    pub intersections: bool,
+}
+
+impl Streets {
+    /// Both.
+    pub const ALL: Self = Self { lines: true, intersections: true };
+    /// The intersections alone.
+    pub const INTERSECTIONS: Self = Self { lines: false, intersections: true };
+}
+
 /// A row of the layer `streets`: an edge of the street graph or an imported way of role other.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StreetRow {

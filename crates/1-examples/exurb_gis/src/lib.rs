@@ -1,8 +1,8 @@
 //! GeoPackage and GeoJSON both ways.
 //!
-//! A city is written as one file of either format and read back as the same city: exactly from
-//! GeoPackage, within 2 cm and with the same topology from GeoJSON. Any other file is read by what
-//! its rows are; the streets of several layers or files become one graph, noded where they cross.
+//! A city is written as one file of either format and read back as the very same city. Any other
+//! file is read by what its rows are; the streets of several layers or files become one graph, noded
+//! where they cross.
 //!
 //! | geometry | becomes | when |
 //! |---|---|---|
@@ -15,7 +15,9 @@
 //!
 //! Read where present: lanes (`lanes`, `NB_VOIES`), width (`width`, `LARGEUR`), `oneway`, `SENS`,
 //! `bridge`, `tunnel`, `layer`, `junction`, name; height (`height`, `HAUTEUR`, ...), levels
-//! (`building:levels`, `levels`, `NB_ETAGES`, ...), `min_height`, `roof:shape`, use; zoning.
+//! (`building:levels`, `levels`, `NB_ETAGES`, ...), `min_height`, `roof:shape`, use; zoning. Of lists,
+//! as OSMnx writes them, the first item counts; GDAL's `other_tags` is read as its columns. Where a
+//! file has a column `highway`, a line that leaves it empty is no street.
 //!
 //! A file's coordinate system may be any with an EPSG code or a common projection. A plane system
 //! in metres beyond that keeps shape and scale and loses its place, with a warning; others are
@@ -24,7 +26,8 @@
 //! | part | what it holds |
 //! |---|---|
 //! | [`geopackage`] | [`write_geopackage`], [`read_geopackage`] |
-//! | [`geojson`] | [`write_geojson`], [`read_geojson`], [`read_geojson_many`], [`read_target`] |
+//! | [`geojson`] | [`write_geojson`], [`read_geojson`], [`read_geojson_many`] |
+//! | [`target`] | [`read_target`] |
 //! | [`fuzz`] | what fuzzing calls |
 //!
 //! ```
@@ -53,11 +56,16 @@ mod numbered;
 mod recognise;
 #[cfg(test)]
 mod sample;
+pub mod target;
 mod value;
 mod wkb;
 
 pub use error::Error;
 pub use geojson::{
-    read_geojson, read_geojson_many, read_target, write_geojson, write_geojson_file,
+    read_geojson, read_geojson_many, write_geojson, write_geojson_file, write_geojson_streets,
 };
-pub use geopackage::{read_geopackage, write_geopackage};
+pub use geopackage::{
+    forget_journals, read_geopackage, write_geopackage, write_geopackage_streets,
+};
+pub use layers::Streets;
+pub use target::{TargetArea, read_target};

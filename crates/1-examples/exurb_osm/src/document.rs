@@ -2,14 +2,16 @@
 //!
 //! Ids count from 1, nodes, ways and relations each on their own, in the order of the city's layers:
 //! equal cities give equal files. Streets share nodes where the street graph does; other ways join
-//! them where they pass the same point on the same level; outlines share corners.
+//! them where they pass the same point on the same level; outlines share corners. Ends of streets
+//! that run on outside the city say so as mappers do (`fixme=continue`); the target is an outline of
+//! its own, last, because streets run past it and bounds are but a box inside.
 
 use std::collections::BTreeMap;
 
 use exurb_city::{City, FeatureShape, Street, StreetGraph, Way};
 use exurb_geom::{GridPoint, Polygon};
 
-use crate::{areas, features};
+use crate::{areas, features, shared_walls, surfaces};
 
 /// Key and value.
 pub type Tag = (&'static str, String);
@@ -60,8 +62,9 @@ impl<'a> Document<'a> {
             out.other_way(way, &mut at);
         }
         let mut corners = BTreeMap::new();
-        for building in city.buildings.iter() {
-            out.polygon(&building.polygon, building_tags(building), &mut corners);
+        let outlines: Vec<&Polygon> = city.buildings.iter().map(|b| &b.polygon).collect();
+        for (building, rings) in city.buildings.iter().zip(shared_walls::rings(&outlines)) {
+            out.rings(&rings, building_tags(building), &mut corners);
         }
         for area in city.water.iter() {
             let mut tags = vec![("natural", "water".to_owned())];
@@ -88,6 +91,8 @@ impl<'a> Document<'a> {
                 FeatureShape::Polygon(polygon) => out.polygon(polygon, tags, &mut corners),
             }
         }
+        let tags = vec![(surfaces::TARGET, "yes".to_owned())];
+        out.polygon(&city.target, tags, &mut BTreeMap::new());
         out
     }
 
@@ -95,10 +100,15 @@ impl<'a> Document<'a> {
     fn streets(&mut self, graph: &StreetGraph) -> BTreeMap<(GridPoint, i32), i64> {
         let mut junctions = vec![0; graph.node_bound()];
         for (id, node) in graph.nodes() {
+            let mut tags = Vec::new();
+            if node.data.cut {
+                tags.push(("fixme", "continue".to_owned()));
+            }
             // On flat ground nobody needs to be told the height.
-            let height = Some(node.data.z_m).filter(|_| self.city.terrain.is_some());
-            let tags = height.map(|z_m| ("ele", format!("{z_m:.1}")));
-            junctions[id.index()] = self.node(node.at, tags.into_iter().collect());
+            if self.city.terrain.is_some() {
+                tags.push(("ele", format!("{:.1}", node.data.z_m)));
+            }
+            junctions[id.index()] = self.node(node.at, tags);
         }
         let mut at = BTreeMap::new();
         for (_, edge) in graph.edges() {
@@ -143,17 +153,27 @@ impl<'a> Document<'a> {
         self.ways.len() as i64
     }
 
-    /// A closed way, or a multipolygon where there are holes.
     fn polygon(
         &mut self,
         polygon: &Polygon,
         tags: Vec<Tag>,
         corners: &mut BTreeMap<GridPoint, i64>,
     ) {
-        let simple = polygon.interiors().is_empty();
+        let rings: Vec<&[GridPoint]> = polygon.rings().collect();
+        self.rings(&rings, tags, corners);
+    }
+
+    /// A closed way, or a multipolygon where there are holes.
+    fn rings(
+        &mut self,
+        rings: &[impl AsRef<[GridPoint]>],
+        tags: Vec<Tag>,
+        corners: &mut BTreeMap<GridPoint, i64>,
+    ) {
+        let simple = rings.len() == 1;
         let mut members = Vec::new();
         let mut tags = Some(tags);
-        for (i, ring) in polygon.rings().enumerate() {
+        for (i, ring) in rings.iter().map(AsRef::as_ref).enumerate() {
             let mut nodes = Vec::with_capacity(ring.len() + 1);
             for p in ring {
                 let known = corners.get(p).copied();

@@ -49,11 +49,15 @@ pub struct Elements {
     pub bounds: Option<Bounds>,
     /// Attribution given in the file.
     pub attribution: Vec<String>,
+    /// What the server that made the file says went wrong.
+    pub remarks: Vec<String>,
     /// Written by this program: its attribution is the whole of it.
     pub is_ours: bool,
     pub nodes: Vec<Node>,
     /// Ids and tags of nodes that are features.
     pub tagged: Vec<(i64, Tags)>,
+    /// Ids of nodes at which a street is said to run on (`fixme=continue`).
+    pub continued: Vec<i64>,
     pub ways: Vec<Way>,
     pub refs: Vec<i64>,
     pub relations: Vec<Relation>,
@@ -72,8 +76,11 @@ impl Elements {
         }
     }
 
-    /// Adds the tags of a node, if they make it a feature.
+    /// Adds the tags of a node, if they make it a feature or an end where a street runs on.
     pub fn push_node_tags(&mut self, id: i64, tags: Tags) {
+        if tags.get("fixme") == Some("continue") {
+            self.continued.push(id);
+        }
         if features::kind(&tags).is_some() {
             self.tagged.push((id, tags.shrunk()));
         }
@@ -102,9 +109,11 @@ impl Elements {
         let shift = self.refs.len();
         self.bounds = self.bounds.or(other.bounds);
         self.attribution.append(&mut other.attribution);
+        self.remarks.append(&mut other.remarks);
         self.is_ours |= other.is_ours;
         self.nodes.append(&mut other.nodes);
         self.tagged.append(&mut other.tagged);
+        self.continued.append(&mut other.continued);
         self.refs.append(&mut other.refs);
         self.ways.extend(other.ways.into_iter().map(|mut way| {
             way.start += shift;

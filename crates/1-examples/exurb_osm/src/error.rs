@@ -41,6 +41,14 @@ pub enum Error {
         /// What it needs, and what to do.
         what: String,
     },
+    /// The server that should have made it did not.
+    #[error("{file} is empty; {what}")]
+    Unmade {
+        /// The file.
+        file: String,
+        /// What the server says.
+        what: String,
+    },
     /// It unpacks to far more than a map would.
     #[error(
         "{file} unpacks to over 64 MB at more than 200 to 1, as an archive bomb does; unpack it first if it is a map"

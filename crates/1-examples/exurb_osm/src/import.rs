@@ -17,7 +17,17 @@ pub fn draft(
     file: &str,
     options: &ImportOptions,
 ) -> Result<(Draft, Vec<String>), Error> {
-    let mut warnings = Vec::new();
+    let mut warnings: Vec<String> = elements
+        .remarks
+        .iter()
+        .map(|remark| format!("the map may not be whole; its server says: {remark}"))
+        .collect();
+    if elements.nodes.is_empty()
+        && let Some(remark) = elements.remarks.first()
+    {
+        let what = format!("its server says: {remark}");
+        return Err(Error::Unmade { file: file.to_owned(), what });
+    }
     let extent = elements.bounds.filter(usable);
     if elements.bounds.is_some() && extent.is_none() {
         warnings.push(
@@ -36,6 +46,9 @@ pub fn draft(
     let streets = streets::read(&elements, &places);
     draft.streets.ways = streets.ways;
     draft.broken_ends = streets.broken_ends;
+    let node = |id: &i64| places::search(&elements.nodes, *id, 0).map(|i| &elements.nodes[i]);
+    let continued = elements.continued.iter().filter_map(node);
+    draft.broken_ends.extend(continued.filter_map(|node| places::project(&draft.frame, node)));
     surfaces::read(&elements, &places, &mut draft, &mut warnings);
 
     draft.metadata.name = name(file).into();

@@ -11,7 +11,7 @@
 //! | `streets`, `buildings`, `areas`, `features` | the meaning of tags |
 //! | `surfaces`, `coast` | everything that is no street; the sea |
 //! | `outline` | rings and polygons of ways and relations |
-//! | `document` | a city as nodes, ways and relations, for `write_xml` and `write_pbf` |
+//! | `document`, `shared_walls` | a city as nodes, ways and relations, for `write_xml` and `write_pbf` |
 //! | [`fuzz`] | bodies of the fuzz targets |
 
 mod areas;
@@ -30,6 +30,7 @@ mod read;
 mod read_overpass;
 mod read_pbf;
 mod read_xml;
+mod shared_walls;
 mod streets;
 mod surfaces;
 mod tags;

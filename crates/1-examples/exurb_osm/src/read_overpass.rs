@@ -64,6 +64,7 @@ impl<'de> Visitor<'de> for Document<'_> {
                     let head: Head = map.next_value()?;
                     self.out.attribution.extend(head.copyright);
                 }
+                "remark" => self.out.remarks.push(map.next_value()?),
                 _ => {
                     map.next_value::<IgnoredAny>()?;
                 }

@@ -34,6 +34,7 @@ pub fn read(input: impl BufRead, file: &str) -> Result<Elements, Error> {
     let mut open: Option<Open> = None;
     let mut depth = 0usize;
     let mut complete = false;
+    let mut in_remark = false;
     loop {
         buffer.clear();
         let at = reader.buffer_position();
@@ -45,7 +46,13 @@ pub fn read(input: impl BufRead, file: &str) -> Result<Elements, Error> {
                 } else {
                     begin(&tag, &mut open, &mut out);
                 }
+                in_remark = depth == 1 && tag.name().as_ref() == "remark";
                 depth += 1;
+            }
+            // What Overpass says when a query failed half way.
+            Event::Text(text) if in_remark => {
+                out.remarks.push(text.xml10_content().trim().to_owned());
+                in_remark = false;
             }
             Event::Empty(tag) if depth == 0 => {
                 root(&tag, file, &mut out)?;

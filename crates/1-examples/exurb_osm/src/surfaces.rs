@@ -20,9 +20,14 @@ enum Kind {
     LandUse(Arc<str>),
     Parcel,
     Feature(&'static str),
+    /// The area of a city that this program made.
+    Target,
 }
 
 fn kind(tags: &Tags) -> Option<Kind> {
+    if tags.says(TARGET) {
+        return Some(Kind::Target);
+    }
     if buildings::is_building(tags) {
         return Some(Kind::Building);
     }
@@ -33,6 +38,9 @@ fn kind(tags: &Tags) -> Option<Kind> {
         .or_else(|| areas::is_parcel(tags).then_some(Kind::Parcel))
         .or_else(|| areas::land_use(tags).map(|class| Kind::LandUse(class.into())))
 }
+
+/// Key of the outline of a city's target in files of our own.
+pub const TARGET: &str = "exurb:target";
 
 /// Do these tags make something other than a street?
 pub fn matters(tags: &Tags) -> bool {
@@ -47,6 +55,7 @@ enum Found {
     LandUse(Area),
     Parcel(Parcel),
     Feature(Feature),
+    Target(Polygon),
 }
 
 /// What became of the outlines, by layer.
@@ -154,6 +163,10 @@ fn put(found: Found, draft: &mut Draft) {
         Found::LandUse(area) => draft.land_use.push(area),
         Found::Parcel(parcel) => draft.parcels.push(parcel),
         Found::Feature(feature) => draft.features.push(feature),
+        Found::Target(polygon) => {
+            draft.extent = Some(polygon);
+            draft.runs_past = true;
+        }
     }
 }
 
@@ -224,6 +237,7 @@ fn found(kind: &Kind, tags: &Tags, polygons: Vec<Polygon>) -> Vec<Found> {
             Kind::LandUse(class) => Found::LandUse(area(polygon, class)),
             Kind::Parcel => Found::Parcel(areas::parcel(tags, polygon)),
             Kind::Feature(word) => Found::Feature(feature(word, FeatureShape::Polygon(polygon))),
+            Kind::Target => Found::Target(polygon),
         })
         .collect()
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 /// The keys that matter; all others are dropped while reading. Sorted.
-const KEYS: [&str; 37] = [
+const KEYS: [&str; 39] = [
     "amenity",
     "area",
     "barrier",
@@ -14,6 +14,8 @@ const KEYS: [&str; 37] = [
     "building:min_level",
     "building:part",
     "emergency",
+    "exurb:target",
+    "fixme",
     "height",
     "highway",
     "historic",

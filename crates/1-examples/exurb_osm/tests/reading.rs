@@ -238,6 +238,24 @@ fn archive_bombs_are_refused() {
 }
 
 #[test]
+fn what_a_server_says_of_a_failed_query_is_passed_on() {
+    let way = r#"{"type":"way","id":1,"nodes":[1,2],"tags":{"highway":"residential"}}"#;
+    let nodes = r#"{"type":"node","id":1,"lat":41.0,"lon":21.0},{"type":"node","id":2,"lat":41.001,"lon":21.0}"#;
+    let json = |elements: &str| {
+        format!(
+            r#"{{"version":0.6,"elements":[{elements}],"remark":"runtime error: Query timed out"}}"#
+        )
+    };
+    let partly = import(json(&format!("{nodes},{way}")).as_bytes(), "a.json").expect("a street");
+    assert!(partly.warnings.iter().any(|w| w.contains("Query timed out")), "{:?}", partly.warnings);
+    let error = import(json("").as_bytes(), "a.json").expect_err("nothing").to_string();
+    assert!(error.contains("Query timed out"), "{error}");
+    let xml = b"<osm version=\"0.6\"><remark> runtime error: out of memory </remark></osm>";
+    let error = import(xml, "a.osm").expect_err("nothing").to_string();
+    assert!(error.contains("out of memory"), "{error}");
+}
+
+#[test]
 fn errors_name_the_file_and_what_is_wrong() {
     let message = |bytes: &[u8], name| import(bytes, name).expect_err(name).to_string();
     assert_eq!(message(b"", "a.osm"), "a.osm is empty");
@@ -245,7 +263,7 @@ fn errors_name_the_file_and_what_is_wrong() {
     assert!(message(b"<gpx></gpx>", "a.osm").contains("`<gpx>` instead of `<osm>`"));
     assert!(message(b"<osm><node id='1'", "a.osm").contains("truncated or corrupt"));
     assert!(message(b"<osm><way id=\"1\">", "a.osm").contains("before `</osm>`"));
-    assert!(message(b"<osm/>", "a.osm").contains("nothing lies inside the file"));
+    assert!(message(b"<osm/>", "a.osm").contains("holds no streets"));
     assert!(
         message(b"\xff\xff\xff\xff1234", "a.pbf").contains("a blob header of 4294967295 bytes")
     );

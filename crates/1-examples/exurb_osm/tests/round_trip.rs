@@ -221,6 +221,36 @@ proptest! {
 }
 
 #[test]
+fn streets_past_the_target_come_back_and_their_ends_are_cut() {
+    let mut city = town(4, &[0]);
+    // A target with a yard, inside the streets.
+    let square = |low: f64, high: f64| {
+        let corners = [(low, low), (high, low), (high, high), (low, high)];
+        corners.map(|(x, y)| GridPoint::m(x, y)).to_vec()
+    };
+    city.target = Polygon::new(square(20.0, 250.0), vec![square(100.0, 140.0)]).expect("area");
+    let mut streets = (*city.streets).clone();
+    let stub = GridPoint::m(-60.0, 0.0);
+    let corner = streets.nodes().find(|(_, n)| n.at == GridPoint::m(0.0, 0.0)).expect("there").0;
+    let outside = streets.add_node(stub, Junction { cut: true, ..Junction::default() });
+    streets.add_edge(outside, corner, Vec::new(), Street::default());
+    city.streets = Arc::new(streets);
+    let given = as_imported(&city.streets);
+    for back in [read(&xml(&city), Format::Xml), read(&pbf(&city), Format::Pbf)] {
+        assert_same_streets(&given, &city, &back);
+        let cut = back.streets.nodes().filter(|(_, node)| node.data.cut).count();
+        assert_eq!(cut, 1);
+        assert_eq!(back.target.interiors().len(), 1);
+        assert!((back.target.area_m2() - city.target.area_m2()).abs() < 20.0);
+        // Asked for a part, the rest goes as ever.
+        let bytes = xml(&city);
+        let part = ImportOptions { part: Some(exurb_city::Part::West), ..Default::default() };
+        let half = read_bytes(&bytes, "city.osm", None, &part).expect("valid").city;
+        assert!(half.streets.length_m() < back.streets.length_m() / 2.0);
+    }
+}
+
+#[test]
 fn equal_cities_are_equal_files() {
     let bends = [100, -7_000, 3_333];
     assert_eq!(xml(&town(4, &bends)), xml(&town(4, &bends)));

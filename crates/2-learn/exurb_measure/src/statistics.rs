@@ -28,6 +28,23 @@ pub struct StreetStatistics {
     pub curvature_variance: f64,
 }
 
+impl StreetStatistics {
+    /// The statistics of draws from both, weighted `share` to `1 - share` (eq. 5).
+    pub fn mixed(self, other: Self, share: f64) -> Self {
+        let rest = 1.0 - share;
+        let mean = |a: f64, b: f64| share * a + rest * b;
+        let variance = |a: f64, b: f64| share * share * a + rest * rest * b;
+        Self {
+            count: self.count + other.count,
+            length_total_m: mean(self.length_total_m, other.length_total_m),
+            length_mean_m: mean(self.length_mean_m, other.length_mean_m),
+            length_variance_m2: variance(self.length_variance_m2, other.length_variance_m2),
+            curvature_mean: mean(self.curvature_mean, other.curvature_mean),
+            curvature_variance: variance(self.curvature_variance, other.curvature_variance),
+        }
+    }
+}
+
 /// Statistics of the streets of `role`, on the graph of that role alone with its nodes of degree 2
 /// dissolved.
 pub fn street_statistics(graph: &StreetGraph, role: Role) -> StreetStatistics {

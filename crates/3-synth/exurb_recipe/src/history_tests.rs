@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use exurb_city::City;
 use exurb_geom::{Frame, GridPoint, Polygon};
-use exurb_operation::Example;
+use exurb_operation::{Example, Run};
 
 use super::*;
 use crate::test_operation::registry;
@@ -22,7 +22,7 @@ fn make(recipe: &Recipe, city: Option<City>) -> City {
     let city = city.unwrap_or_else(|| {
         let first = examples.first().map(|e| &*e.city);
         let target = recipe.target.clone().unwrap_or(Target::Size(Size::default()));
-        crate::target::begin(&target, first, Path::new("")).unwrap()
+        crate::target::begin(&target, first, Path::new(""), &Run::new(1)).unwrap()
     });
     let inputs = Inputs { city, examples, read_seconds: 0.0 };
     let run = Run::new(recipe.seed);

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-use exurb_city::{City, Imported};
+use exurb_city::{City, Imported, completeness};
 use exurb_operation::{Example, Run, Scope};
 use serde_json::Value;
 
@@ -89,7 +89,7 @@ impl Recipe {
             )),
             (None, _) => {
                 let target = self.target.clone().unwrap_or(Target::Size(Default::default()));
-                target::begin(&target, examples.first().map(|e| &*e.city), folder)
+                target::begin(&target, examples.first().map(|e| &*e.city), folder, run)
             }
         }
     }
@@ -107,7 +107,7 @@ impl Recipe {
         let mut seconds = Seconds { read: read_seconds, ..Seconds::default() };
         for step in &self.steps {
             let operation = registry.find(&step.op).map_err(Error::Recipe)?;
-            let scope = scope(&step.scope, &city, folder)?;
+            let scope = scope(&step.scope, &city, folder, run)?;
             let chosen = self.choose(step, &city, &examples);
             run.phase(&step.op);
             let run = run.seeded(step.seed.unwrap_or(self.seed));
@@ -118,6 +118,9 @@ impl Recipe {
             city = outcome.city;
         }
         run.check()?;
+        // A made city is an example, too: have its streets their houses by now?
+        city.metadata.buildings_complete =
+            completeness::is_complete(&city.streets, &city.buildings);
         city.metadata.recipe = self.portable(registry).after(&history, registry).print()?;
         Ok(Made { city, seconds })
     }
@@ -137,11 +140,11 @@ impl Recipe {
     }
 }
 
-fn scope(within: &Within, city: &City, folder: &Path) -> Result<Scope, Error> {
+fn scope(within: &Within, city: &City, folder: &Path, run: &Run) -> Result<Scope, Error> {
     Ok(match within {
         Within::All => Scope::All,
         Within::Blocks(blocks) => Scope::Blocks(blocks.clone()),
-        Within::File(file) => Scope::Inside(target::read_in_frame(file, &city.frame, folder)?),
+        Within::File(file) => Scope::Inside(target::read_in_frame(file, &city.frame, folder, run)?),
     })
 }
 

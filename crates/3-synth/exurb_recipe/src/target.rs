@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use exurb_city::{City, ImportOptions};
+use exurb_city::{City, ImportOptions, Imported};
 use exurb_geom::{Frame, GridPoint, Polygon, Vec2};
+use exurb_operation::Run;
 
 use crate::format::Format;
 use crate::{Error, Size, Target, open};
@@ -11,35 +12,55 @@ use crate::{Error, Size, Target, open};
 /// The empty city of a target: a rectangle lies in the first example's frame around its centre, the
 /// polygon of a file in a frame of its own, whose origin is the polygon's centre. The target of a
 /// city file brings its ground: terrain and water.
-pub fn begin(target: &Target, first: Option<&City>, folder: &Path) -> Result<City, Error> {
+pub fn begin(
+    target: &Target,
+    first: Option<&City>,
+    folder: &Path,
+    run: &Run,
+) -> Result<City, Error> {
     match target {
         Target::Size(size) => Ok(rectangle(*size, first)),
         Target::File(file) => {
+            let (frame, polygon) = read(file, None, folder, run)?;
+            let mut city = City::empty(frame, polygon);
             let path = open::locate(file, folder)?;
-            if open::format_of(&path)? == Format::GeoJson {
-                let (frame, polygon) = read(file, None, folder)?;
-                return Ok(City::empty(frame, polygon));
+            if open::format_of(&path)? == Format::GeoPackage
+                && let Ok(Imported { city: given, .. }) =
+                    open::open_city(&path, &ImportOptions::default())
+                && given.frame == city.frame
+            {
+                (city.terrain, city.water) = (given.terrain, given.water);
+                city.metadata.credit(&given.metadata.attribution);
             }
-            let given = open::open_city(&path, &ImportOptions::default())?.city;
-            let mut city = City::empty(given.frame, given.target);
-            (city.terrain, city.water) = (given.terrain, given.water);
-            city.metadata.credit(&given.metadata.attribution);
             Ok(city)
         }
     }
 }
 
 /// The polygon of a file, in the given frame.
-pub fn read_in_frame(file: &Path, frame: &Frame, folder: &Path) -> Result<Polygon, Error> {
-    read(file, Some(frame), folder).map(|(_, polygon)| polygon)
+pub fn read_in_frame(
+    file: &Path,
+    frame: &Frame,
+    folder: &Path,
+    run: &Run,
+) -> Result<Polygon, Error> {
+    read(file, Some(frame), folder, run).map(|(_, polygon)| polygon)
 }
 
-/// The largest polygon of a GeoJSON file, or the target of a city.
-fn read(file: &Path, frame: Option<&Frame>, folder: &Path) -> Result<(Frame, Polygon), Error> {
+/// The area drawn in a GeoJSON or GeoPackage file, or the extent of another map. What is mended or
+/// left out of it goes to `run` as warnings.
+fn read(
+    file: &Path,
+    frame: Option<&Frame>,
+    folder: &Path,
+    run: &Run,
+) -> Result<(Frame, Polygon), Error> {
     let path = open::locate(file, folder)?;
-    if open::format_of(&path)? == Format::GeoJson {
-        return exurb_gis::read_target(&path, frame)
-            .map_err(|e| Error::Target(open::named(&path, &e.to_string())));
+    if matches!(open::format_of(&path)?, Format::GeoJson | Format::GeoPackage) {
+        let area = exurb_gis::read_target(&path, frame)
+            .map_err(|e| Error::Target(open::named(&path, &e.to_string())))?;
+        area.warnings.into_iter().for_each(|warning| run.warn(warning));
+        return Ok((area.frame, area.polygon));
     }
     let city = open::open_city(&path, &ImportOptions::default())?.city;
     let Some(frame) = frame else { return Ok((city.frame, city.target)) };

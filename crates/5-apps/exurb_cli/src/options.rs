@@ -49,6 +49,15 @@ pub struct OutputOptions {
     pub to: Option<String>,
 }
 
+/// Whether to write at all.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Running")]
+pub struct DryOptions {
+    /// Read and check everything, write nothing
+    #[arg(long)]
+    pub dry_run: bool,
+}
+
 /// What of a map to take.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Reading")]
@@ -85,7 +94,7 @@ pub struct TargetOptions {
     #[arg(long, value_name = "AREA.geojson", conflicts_with = "size")]
     pub target: Option<PathBuf>,
     /// Width and height in metres, around the first example's centre [default: 2000x2000]
-    #[arg(long, value_name = "WxH")]
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true)]
     pub size: Option<Size>,
 }
 

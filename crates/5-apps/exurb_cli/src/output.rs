@@ -1,6 +1,6 @@
 //! Writing cities: all files of a job under way first, then all put in their places.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Instant;
 
@@ -44,7 +44,7 @@ impl Outputs {
             run.check()?;
             let others = match &export.layer {
                 Some(name) => {
-                    let mut alone = layer::alone(city, name)?;
+                    let mut alone = layer::alone(city, name);
                     if format.is_model() || picture::is_perspective(export) {
                         // A layer stands where it stands in the whole.
                         alone.terrain.clone_from(&city.terrain);
@@ -59,16 +59,47 @@ impl Outputs {
         let others: Result<Vec<Vec<Pending>>, Problem> = self.files.par_iter().map(one).collect();
         let others = others?;
         run.check()?;
-        let own = self.files.into_iter().map(|(.., pending)| pending);
-        own.chain(others.into_iter().flatten()).try_for_each(Pending::commit)?;
+        for (_, format, pending) in self.files {
+            let path = pending.path().to_owned();
+            pending.commit()?;
+            if format == Format::GeoPackage {
+                exurb_gis::forget_journals(&path);
+            }
+        }
+        others.into_iter().flatten().try_for_each(Pending::commit)?;
         Ok(started.elapsed().as_secs_f64())
     }
 }
 
-/// Makes a folder and those around it.
-pub fn make_folder(folder: &Path) -> Result<(), Problem> {
-    std::fs::create_dir_all(folder)
-        .map_err(|e| Problem::failed(format!("{} cannot be made: {e}", folder.display())))
+/// A folder to write into. One that was made for this and stayed empty goes again, unless it is
+/// kept.
+#[derive(Debug)]
+pub struct Folder {
+    made: Option<PathBuf>,
+}
+
+impl Folder {
+    /// Makes the folder and those around it where it is not there.
+    pub fn make(folder: &Path) -> Result<Self, Problem> {
+        let made = (!folder.exists()).then(|| folder.to_owned());
+        std::fs::create_dir_all(folder)
+            .map_err(|e| Problem::failed(format!("{} cannot be made: {e}", folder.display())))?;
+        Ok(Self { made })
+    }
+
+    /// Lets it stay.
+    pub fn keep(mut self) {
+        self.made = None;
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        if let Some(made) = &self.made {
+            // What holds something stays.
+            let _ = std::fs::remove_dir(made);
+        }
+    }
 }
 
 /// Writes one file; gives the files that go with it.
@@ -79,10 +110,13 @@ fn write(
     pending: &Pending,
 ) -> Result<Vec<Pending>, Problem> {
     let model = exurb_model3d::Options::default();
+    let streets = layer::streets(export.layer.as_deref());
     match format {
-        Format::GeoPackage => exurb_gis::write_geopackage(city, pending.beside())
+        Format::GeoPackage => exurb_gis::write_geopackage_streets(city, streets, pending.beside())
             .map_err(|e| pending.problem(&e.to_string()))?,
-        Format::GeoJson => pending.stream(|out| exurb_gis::write_geojson(city, out))?,
+        Format::GeoJson => {
+            pending.stream(|out| exurb_gis::write_geojson_streets(city, streets, out))?;
+        }
         Format::OsmXml => pending.stream(|out| exurb_osm::write_xml(city, out))?,
         Format::OsmXmlGz => pending.stream(|out| {
             let mut packed = flate2::write::GzEncoder::new(out, flate2::Compression::default());

@@ -1,7 +1,8 @@
-//! Files that appear whole or not at all: written beside their place, then renamed.
+//! Files that appear whole or not at all: written beside their place, then renamed. What is no file,
+//! as `/dev/null` or a pipe, cannot be replaced: it gets all at once what was written elsewhere.
 
-use std::fs::{self, File};
-use std::io::{BufWriter, Write};
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use crate::problem::Problem;
@@ -11,6 +12,8 @@ use crate::problem::Problem;
 pub struct Pending {
     path: PathBuf,
     beside: PathBuf,
+    /// Is there something at the path that must stay what it is?
+    is_device: bool,
 }
 
 impl Pending {
@@ -19,16 +22,23 @@ impl Pending {
     pub fn new(path: &Path) -> Result<Self, Problem> {
         let wrong =
             |what: &str| Problem::failed(format!("{} cannot be written: {what}", path.display()));
-        let name = path.file_name().ok_or_else(|| wrong("it names no file"))?.to_string_lossy();
         if path.is_dir() {
             return Err(wrong("it is a folder; name a file in it"));
         }
-        let beside = path.with_file_name(format!(".{}.{name}", std::process::id()));
+        // A link stays; what it points to is replaced.
+        let place = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        let name = place.file_name().ok_or_else(|| wrong("it names no file"))?.to_string_lossy();
+        let hidden = format!(".{}.{name}", std::process::id());
+        let is_device = fs::metadata(&place).is_ok_and(|there| !there.is_file());
+        let beside = match is_device {
+            true => std::env::temp_dir().join(hidden),
+            false => place.with_file_name(hidden),
+        };
         fs::write(&beside, b"").map_err(|e| match e.kind() {
-            std::io::ErrorKind::NotFound => wrong("its folder is not there; make it first"),
+            io::ErrorKind::NotFound => wrong("its folder is not there; make it first"),
             _ => wrong(&e.to_string()),
         })?;
-        Ok(Self { path: path.to_owned(), beside })
+        Ok(Self { path: path.to_owned(), beside, is_device })
     }
 
     /// The file's place.
@@ -54,7 +64,7 @@ impl Pending {
     /// Writes what `write` puts into a stream.
     pub fn stream(
         &self,
-        write: impl FnOnce(&mut BufWriter<File>) -> std::io::Result<()>,
+        write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
     ) -> Result<(), Problem> {
         let whole = || {
             let mut out = BufWriter::new(File::create(&self.beside)?);
@@ -74,9 +84,21 @@ impl Pending {
         Problem::failed(format!("{} cannot be written: {message}", self.path.display()))
     }
 
-    /// Puts the file in its place, replacing what was there.
+    /// Puts the file in its place, replacing what was there; its permissions stay.
     pub fn commit(self) -> Result<(), Problem> {
-        fs::rename(&self.beside, &self.path).map_err(|e| self.problem(&e.to_string()))
+        self.put().map_err(|e| self.problem(&e.to_string()))
+    }
+
+    fn put(&self) -> io::Result<()> {
+        if self.is_device {
+            let mut device = OpenOptions::new().write(true).open(&self.path)?;
+            return io::copy(&mut File::open(&self.beside)?, &mut device).map(|_| ());
+        }
+        let place = fs::canonicalize(&self.path).unwrap_or_else(|_| self.path.clone());
+        if let Ok(there) = fs::metadata(&place) {
+            fs::set_permissions(&self.beside, there.permissions())?;
+        }
+        fs::rename(&self.beside, place)
     }
 }
 
@@ -105,6 +127,35 @@ mod tests {
         pending.commit().unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"whole");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_stay_links_and_permissions_stay() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let (file, link) = (folder.path().join("city.svg"), folder.path().join("latest.svg"));
+        fs::write(&file, b"old").unwrap();
+        fs::set_permissions(&file, fs::Permissions::from_mode(0o640)).unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        let pending = Pending::new(&link).unwrap();
+        pending.write(b"new").unwrap();
+        pending.commit().unwrap();
+        assert!(link.is_symlink());
+        assert_eq!(fs::read(&file).unwrap(), b"new");
+        assert_eq!(fs::metadata(&file).unwrap().permissions().mode() & 0o777, 0o640);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_device_takes_what_was_written_and_stays() {
+        let null = Path::new("/dev/null");
+        let pending = Pending::new(null).unwrap();
+        pending.write(b"whole").unwrap();
+        let beside = pending.beside().to_owned();
+        pending.commit().unwrap();
+        assert!(!fs::metadata(null).unwrap().is_file());
+        assert!(!beside.exists());
     }
 
     #[test]

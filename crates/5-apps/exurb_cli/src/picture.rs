@@ -34,11 +34,9 @@ pub fn check(export: &Export, format: Format) -> Result<(), Problem> {
     let name = export.file.display();
     map(export)?;
     if let Some(layer) = &export.layer {
-        layer::check(layer)?;
+        layer::check(layer, format)?;
     }
-    if format == Format::GeoTiff && export.layer.as_deref().is_some_and(|l| l != layer::TERRAIN) {
-        return Err(Problem::usage(format!("{name}: GeoTIFF takes the layer terrain alone")));
-    }
+    options_fit(export)?;
     if is_perspective(export) && format != Format::Png {
         return Err(Problem::usage(format!(
             "{name}: perspective pictures are PNG; end the name in .png, or write a model as .glb \
@@ -49,6 +47,34 @@ pub fn check(export: &Export, format: Format) -> Result<(), Problem> {
         Some("map" | "3d") | None => Ok(()),
         Some(view) => Err(unknown("view", view, &["map", "3d"])),
     }
+}
+
+/// Does every option say something of this kind of picture, within its range?
+fn options_fit(export: &Export) -> Result<(), Problem> {
+    let wrong =
+        |message: String| Err(Problem::usage(format!("{}: {message}", export.file.display())));
+    let of_maps = [("style", export.style.is_some()), ("color-by", export.color_by.is_some())];
+    let on_view = of_maps.into_iter().find(|(_, given)| *given && is_perspective(export));
+    if let Some((option, _)) = on_view {
+        return wrong(format!(
+            "{option} is for maps; a perspective picture has the colours of the model"
+        ));
+    }
+    for (option, value, least, most) in [
+        ("azimuth", export.azimuth, -360.0, 360.0),
+        ("elevation", export.elevation, 2.0, 89.0),
+        ("zoom", export.zoom, 0.1, 100.0),
+        ("width", export.width.map(f64::from).filter(|_| is_perspective(export)), 32.0, 8192.0),
+    ] {
+        let Some(value) = value else { continue };
+        if !is_perspective(export) {
+            return wrong(format!("{option} is for perspective pictures; ask for view 3d"));
+        }
+        if !(least..=most).contains(&value) {
+            return wrong(format!("{option} is {value}, expected {least} to {most}"));
+        }
+    }
+    Ok(())
 }
 
 /// The map's options.

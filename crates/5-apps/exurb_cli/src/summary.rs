@@ -65,13 +65,19 @@ fn brief(info: &Info) -> String {
     let whole = info.to_text();
     let figures = whole.split("\n\n").next().unwrap_or(&whole);
     let broken = info.laws.iter().filter(|(_, law)| !law.pass).map(|(name, _)| name.as_str());
-    let gates = info.likeness_gates.iter();
-    let missed = gates.filter(|(_, gate)| gate.pass == Some(false)).map(|(name, _)| name.as_str());
-    format!(
-        "{figures}\nlaws            {}\nlikeness gates  {}\n",
-        verdict("broken", &broken.collect::<Vec<_>>()),
-        verdict("missed", &missed.collect::<Vec<_>>())
-    )
+    let laws = verdict("broken", &broken.collect::<Vec<_>>());
+    format!("{figures}\nlaws            {laws}\n{}", likeness(info))
+}
+
+/// How the gates stand; nothing where there is no example to compare with.
+fn likeness(info: &Info) -> String {
+    let gates = || info.likeness_gates.iter();
+    if gates().all(|(_, gate)| gate.pass.is_none()) {
+        return String::new();
+    }
+    let missed = gates().filter(|(_, gate)| gate.pass == Some(false));
+    let missed: Vec<&str> = missed.map(|(name, _)| name.as_str()).collect();
+    format!("likeness gates  {}\n", verdict("missed", &missed))
 }
 
 fn verdict(word: &str, names: &[&str]) -> String {

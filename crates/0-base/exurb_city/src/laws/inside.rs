@@ -1,13 +1,9 @@
 //! The street network inside the target, as shares are measured on it: clipped, cut ends marked,
 //! nodes of degree 2 dissolved.
 
-use exurb_geom::Polygon;
 use exurb_graph::{EdgeId, Graph, NodeId};
 
-use crate::{City, Junction};
-
-/// Dead ends this near the target's border were cut there, whether they say so or not, in metres.
-const BORDER_M: f64 = 1.0;
+use crate::{City, Junction, street_graph};
 
 /// The network inside the target; each edge names the (first) street that it is a part of.
 pub struct Inside {
@@ -61,21 +57,6 @@ pub fn clipped(city: &City) -> Graph<Junction, EdgeId> {
         }
     }
     graph.remove_isolated_nodes();
-    mark_ends_on_border(&mut graph, &city.target);
+    street_graph::mark_ends_on_border(&mut graph, &city.target);
     graph
-}
-
-fn mark_ends_on_border(graph: &mut Graph<Junction, EdgeId>, target: &Polygon) {
-    let ends: Vec<NodeId> = graph
-        .nodes()
-        .filter(|(id, node)| {
-            graph.degree(*id) == 1
-                && !node.data.cut
-                && target.boundary_distance_m(node.at.to_m()) < BORDER_M
-        })
-        .map(|(id, _)| id)
-        .collect();
-    for id in ends {
-        graph.node_mut(id).data.cut = true;
-    }
 }

@@ -18,9 +18,9 @@ use crate::metadata;
 use crate::recognise::Attributes;
 use crate::value::Value;
 
-/// Reads GeoJSON: a city file of our own as the city it was written from (coordinates within 2 cm,
-/// the same topology), any other by its lines and polygons (see the table in the crate's
-/// documentation); rows that do not tell what they are go by the file's name.
+/// Reads GeoJSON: a city file of our own as the very city it was written from, any other by its
+/// lines and polygons (see the table in the crate's documentation); rows that do not tell what they
+/// are go by the file's name.
 ///
 /// A legacy `crs` member is understood. Coordinates beyond ±180 without one are taken as metres of
 /// an unknown place, with a warning. Streams; O(n log n).
@@ -225,7 +225,9 @@ pub(super) fn system(crs: Option<&Json>) -> Result<Option<Crs>, String> {
 
 fn value_of(value: &Json) -> Value<'_> {
     match value {
-        Json::Null | Json::Array(_) | Json::Object(_) => Value::Null,
+        Json::Null | Json::Object(_) => Value::Null,
+        // OSMnx has lists of classes and names.
+        Json::Array(_) => Value::from(value.to_string()),
         Json::Bool(yes) => Value::Bool(*yes),
         Json::Number(n) => match n.as_i64() {
             Some(n) => Value::Int(n),

@@ -1,12 +1,12 @@
 use std::path::{Path, PathBuf};
 
-use exurb_city::{City, FeatureShape, ImportOptions, Imported, Role};
-use exurb_geom::{Frame, GridPoint, LonLat, Polygon};
+use exurb_city::{City, ImportOptions, Imported, Role};
+use exurb_geom::Frame;
 use proptest::prelude::*;
 
-use super::{read_geojson_many, read_stream, read_target_stream, write_geojson};
+use super::{read_geojson_many, read_stream, write_geojson};
 use crate::Error;
-use crate::sample::{self, any_city};
+use crate::sample::{self, any_city, assert_same};
 
 fn written(city: &City) -> String {
     let mut out = Vec::new();
@@ -18,61 +18,6 @@ fn read(text: &str, name: &str) -> Result<Imported, Error> {
     read_stream(text.as_bytes(), "test.geojson", name, &ImportOptions::default())
 }
 
-fn near(a: &[GridPoint], b: &[GridPoint]) -> bool {
-    a.len() == b.len() && a.iter().zip(b).all(|(p, q)| p.distance_m(*q) < 0.02)
-}
-
-fn alike(a: &Polygon, b: &Polygon) -> bool {
-    a.rings().count() == b.rings().count() && a.rings().zip(b.rings()).all(|(r, s)| near(r, s))
-}
-
-/// The cities with everything but positions the same, and positions within 2 cm.
-fn assert_near(a: &City, b: &City) {
-    let (a, b) = (crate::numbered::numbered(a), crate::numbered::numbered(b));
-    assert_eq!((&a.frame, &a.metadata), (&b.frame, &b.metadata));
-    assert!(alike(&a.target, &b.target));
-    assert_eq!(a.streets.node_count(), b.streets.node_count());
-    for ((_, m), (_, n)) in a.streets.nodes().zip(b.streets.nodes()) {
-        assert_eq!(m.data, n.data);
-        assert!(near(&[m.at], &[n.at]));
-    }
-    assert_eq!(a.streets.edge_count(), b.streets.edge_count());
-    for ((_, e), (_, f)) in a.streets.edges().zip(b.streets.edges()) {
-        assert_eq!((e.from, e.to, &e.data), (f.from, f.to, &f.data));
-        assert!(near(e.line(), f.line()));
-    }
-    assert_eq!(a.other_ways.len(), b.other_ways.len());
-    for (v, w) in a.other_ways.iter().zip(b.other_ways.iter()) {
-        assert_eq!((v.id, &v.nodes, &v.street), (w.id, &w.nodes, &w.street));
-        assert!(near(&v.line, &w.line));
-    }
-    macro_rules! assert_layer {
-        ($($layer:ident),*) => {$(
-            assert_eq!(a.$layer.len(), b.$layer.len(), stringify!($layer));
-            for (x, y) in a.$layer.iter().zip(b.$layer.iter()) {
-                assert!(alike(&x.polygon, &y.polygon), "{x:?} {y:?}");
-                let mut x = x.clone();
-                x.polygon = y.polygon.clone();
-                assert_eq!(&x, y);
-            }
-        )*};
-    }
-    assert_layer!(blocks, parcels, buildings, water, land_use);
-    assert_eq!(a.features.len(), b.features.len());
-    for (x, y) in a.features.iter().zip(b.features.iter()) {
-        assert!(match (&x.shape, &y.shape) {
-            (FeatureShape::Point(p), FeatureShape::Point(q)) => near(&[*p], &[*q]),
-            (FeatureShape::Line(p), FeatureShape::Line(q)) => near(p, q),
-            (FeatureShape::Polygon(p), FeatureShape::Polygon(q)) => alike(p, q),
-            _ => false,
-        });
-        assert_eq!(
-            (x.id, &x.kind, x.block, &x.provenance),
-            (y.id, &y.kind, y.block, &y.provenance)
-        );
-    }
-}
-
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
@@ -81,7 +26,7 @@ proptest! {
         let text = written(&city);
         let imported = read(&text, "x").unwrap();
         prop_assert_eq!(&imported.warnings, &Vec::<String>::new());
-        assert_near(&imported.city, &city);
+        assert_same(&imported.city, &city);
     }
 
     #[test]
@@ -198,56 +143,6 @@ fn errors_say_what_is_wrong_and_where() {
         .replace("\"class\":\"residential\"", "\"class\":\"cowpath\"");
     let error = read(&broken, "map").unwrap_err().to_string();
     assert!(error.contains("feature 2 (a streets)") || error.contains("cowpath"), "{error}");
-}
-
-fn target(text: &str, frame: Option<&Frame>) -> Result<(Frame, Polygon), String> {
-    read_target_stream(text.as_bytes(), "t.geojson", frame).map_err(|e| e.to_string())
-}
-
-#[test]
-fn targets_are_read_or_refused() {
-    let square = |w: f64| {
-        format!(
-            r#"{{"type":"Polygon","coordinates":[[[10,50],[{e},50],[{e},{n}],[10,{n}],[10,50]]]}}"#,
-            e = 10.0 + w,
-            n = 50.0 + w
-        )
-    };
-    let (frame, polygon) = target(&square(0.01), None).unwrap();
-    assert!((frame.origin().lon - 10.005).abs() < 1e-9);
-    assert!((polygon.area_m2() / (716.6 * 1112.4) - 1.0).abs() < 0.01, "{}", polygon.area_m2());
-
-    let elsewhere = Frame::new(LonLat { lon: 10.02, lat: 50.0 }).unwrap();
-    let (frame, moved) = target(&square(0.01), Some(&elsewhere)).unwrap();
-    assert_eq!(frame, elsewhere);
-    assert!(moved.bounds().max.x < -700.0);
-
-    let two = r#"{"type":"MultiPolygon","coordinates":[[[[0,0],[0.01,0],[0.01,0.01],[0,0]]],[[[1,0],[1.02,0],[1.02,0.02],[1,0]]]]}"#;
-    let (_, larger) = target(two, None).unwrap();
-    assert!((larger.area_m2() / 2.47e6 - 1.0).abs() < 0.02, "{}", larger.area_m2());
-
-    for (text, word) in [
-        (square(3.0), "larger than 10,000"),
-        (square(0.00001), "too little"),
-        (r#"{"type":"LineString","coordinates":[[0,0],[1,1]]}"#.to_owned(), "holds no polygon"),
-        (
-            r#"{"type":"Polygon","coordinates":[[[0,0],[0.1,0.1],[0.1,0],[0,0.09],[0,0]]]}"#
-                .to_owned(),
-            "crosses",
-        ),
-        (r#"{"type":"Polygon","coordinates":[]}"#.to_owned(), "area"),
-        (
-            r#"{"type":"Polygon","coordinates":[[[10,88],[10.1,88],[10.1,88.1],[10,88]]]}"#
-                .to_owned(),
-            "85",
-        ),
-    ] {
-        let error = target(&text, None).unwrap_err();
-        assert!(error.contains(word), "{error}");
-    }
-    let city = sample::grid_city(3);
-    let (_, own) = target(&written(&city), Some(&city.frame)).unwrap();
-    assert!(alike(&own, &city.target), "the target of a city file is its target");
 }
 
 fn shared(names: &[&str]) -> Option<Vec<PathBuf>> {

@@ -9,13 +9,13 @@ use exurb_geom::{Frame, GridPoint, LonLat};
 
 use crate::Error;
 use crate::beside::Beside;
-use crate::layers::{self, Kind, Layer, StreetRow, TargetRow};
+use crate::layers::{self, Kind, Layer, StreetRow, Streets, TargetRow};
 use crate::metadata;
 use crate::numbered::numbered;
 use crate::value::Value;
 use crate::wkb::Shape;
 
-/// Writes a city as one GeoJSON feature collection (contract, section 4; RFC 7946): WGS 84 with 7
+/// Writes a city as one GeoJSON feature collection (contract, section 4; RFC 7946): WGS 84 with 9
 /// decimals, rings closed and right-handed.
 ///
 /// Every feature has `element`, the columns of its layer that are known, and the properties OSM
@@ -25,10 +25,19 @@ use crate::wkb::Shape;
 /// target; what travels with the city stands in foreign members (`exurb_version`,
 /// `exurb_attribution`, ...). Streams; O(n).
 pub fn write_geojson(city: &City, out: &mut impl Write) -> io::Result<()> {
+    write_geojson_streets(city, Streets::ALL, out)
+}
+
+/// [`write_geojson`], of streets and intersections what `streets` says.
+pub fn write_geojson_streets(
+    city: &City,
+    streets: Streets,
+    out: &mut impl Write,
+) -> io::Result<()> {
     let city = numbered(city);
     out.write_all(b"{\"type\":\"FeatureCollection\"")?;
     if let Some([sw, ne]) = city.lonlat_bbox() {
-        let sides = [sw.lon, sw.lat, ne.lon, ne.lat].map(degrees);
+        let sides = [sw.lon, sw.lat, ne.lon, ne.lat].map(|side| degrees(side, 7));
         write!(out, ",\n\"bbox\":[{}]", sides.join(","))?;
     }
     for (key, value) in metadata::entries(&city) {
@@ -36,7 +45,7 @@ pub fn write_geojson(city: &City, out: &mut impl Write) -> io::Result<()> {
     }
     out.write_all(b",\n\"features\":[")?;
     let mut writer = Features { frame: &city.frame, out, count: 0 };
-    writer.city(&city)?;
+    writer.city(&city, streets)?;
     out.write_all(b"\n]}\n")
 }
 
@@ -58,16 +67,17 @@ struct Features<'a, W> {
 }
 
 impl<W: Write> Features<'_, W> {
-    fn city(&mut self, city: &City) -> io::Result<()> {
+    fn city(&mut self, city: &City, streets: Streets) -> io::Result<()> {
         self.layer(
             "target",
             &layers::TARGET,
             [(TargetRow { id: 1 }, Shape::Polygon(&city.target))],
         )?;
-        for (row, shape) in layers::street_rows(city) {
+        for (row, shape) in layers::street_rows(city).filter(|_| streets.lines) {
             self.feature("street", &layers::STREETS, &row, shape, of_street)?;
         }
-        self.layer("intersection", &layers::INTERSECTIONS, layers::intersection_rows(city))?;
+        let intersections = layers::intersection_rows(city).filter(|_| streets.intersections);
+        self.layer("intersection", &layers::INTERSECTIONS, intersections)?;
         let blocks = city.blocks.iter().map(|b| (b, Shape::Polygon(&b.polygon)));
         self.layer("block", &layers::BLOCKS, blocks)?;
         let parcels = city.parcels.iter().map(|p| (p, Shape::Polygon(&p.polygon)));
@@ -147,7 +157,7 @@ impl<W: Write> Features<'_, W> {
 
     fn position(&self, p: GridPoint) -> String {
         let LonLat { lon, lat } = self.frame.unproject(p.to_m());
-        format!("[{},{}]", degrees(lon), degrees(lat))
+        format!("[{},{}]", degrees(lon, DECIMALS), degrees(lat, DECIMALS))
     }
 }
 
@@ -194,9 +204,13 @@ fn areas(areas: &[Area]) -> impl Iterator<Item = (&Area, Shape<'_>)> {
     areas.iter().map(|area| (area, Shape::Polygon(&area.polygon)))
 }
 
-/// 7 decimals (a centimetre), without zeros at the end.
-fn degrees(value: f64) -> String {
-    let word = format!("{value:.7}");
+/// Decimals of positions: a tenth of a millimetre, so that the grid comes back exactly. With the 7
+/// of OSM (a centimetre) walls that houses share would overlap where one has a corner more.
+const DECIMALS: usize = 9;
+
+/// So many decimals, without zeros at the end.
+fn degrees(value: f64, decimals: usize) -> String {
+    let word = format!("{value:.decimals$}");
     let word = word.trim_end_matches('0').trim_end_matches('.');
     if word == "-0" { "0".to_owned() } else { word.to_owned() }
 }

@@ -4,8 +4,8 @@ use std::borrow::Cow;
 use std::path::Path;
 use std::sync::Arc;
 
-use exurb_city::{ImportOptions, Imported};
-use exurb_geom::{Crs, GridPoint, Vec2};
+use exurb_city::{ImportOptions, Imported, Metadata};
+use exurb_geom::{Crs, Frame, GridPoint, Vec2};
 use rusqlite::types::ValueRef;
 use rusqlite::{Connection, OpenFlags, OptionalExtension};
 
@@ -27,14 +27,37 @@ use crate::wkb;
 /// code or a common projection; a plane system beyond that is taken as metres of an unknown place.
 /// Rows stream; the file is not held. O(n log n).
 pub fn read_geopackage(path: &Path, options: &ImportOptions) -> Result<Imported, Error> {
+    let db = open(path)?;
+    let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    read_database(&db, &path.display().to_string(), &name, options)
+}
+
+/// Opens a database to read.
+pub(super) fn open(path: &Path) -> Result<Connection, Error> {
     let file = path.display().to_string();
     // SQLite would say only that it cannot open the file.
     std::fs::File::open(path).map_err(|source| Error::Read { file: file.clone(), source })?;
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-    let db = Connection::open_with_flags(path, flags)
-        .map_err(|source| Error::Database { file: file.clone(), source })?;
-    let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    read_database(&db, &file, &name, options)
+    let database = |source| Error::Database { file: file.clone(), source };
+    let db = Connection::open_with_flags(path, flags).map_err(database)?;
+    distrust(&db).map_err(database)?;
+    Ok(db)
+}
+
+/// A file is data: nothing in it is run, and pages that lie about their size are errors.
+fn distrust(db: &Connection) -> rusqlite::Result<()> {
+    db.execute_batch("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON;")
+}
+
+/// The frame and the metadata of a city of our own.
+pub(super) fn metadata_of(db: &Connection) -> Option<(Frame, Metadata)> {
+    metadata::read(|key: &str| entry_of(db, key))
+}
+
+/// What travels with a city of our own under a key.
+fn entry_of(db: &Connection, key: &str) -> Option<String> {
+    let sql = format!("SELECT value FROM {} WHERE key = ?", schema::METADATA_TABLE);
+    db.query_row(&sql, [key], |row| row.get(0)).optional().ok().flatten()
 }
 
 /// Reads an open database.
@@ -45,17 +68,11 @@ pub(crate) fn read_database(
     options: &ImportOptions,
 ) -> Result<Imported, Error> {
     let database = |source| Error::Database { file: file.to_owned(), source };
-    // A file is data: nothing in it is run, and pages that lie about their size are errors.
-    db.execute_batch("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON;")
-        .map_err(database)?;
-    let value = |key: &str| -> Option<String> {
-        let sql = format!("SELECT value FROM {} WHERE key = ?", schema::METADATA_TABLE);
-        db.query_row(&sql, [key], |row| row.get(0)).optional().ok().flatten()
-    };
-    match metadata::read(value) {
+    distrust(db).map_err(database)?;
+    match metadata_of(db) {
         Some((frame, metadata)) => {
             let mut assembly = Assembly::new(file.to_owned(), frame, metadata);
-            let level = value(metadata::WATER_LEVEL).and_then(|level| level.parse().ok());
+            let level = entry_of(db, metadata::WATER_LEVEL).and_then(|level| level.parse().ok());
             let ground = terrain::read(db, file)?;
             assembly.terrain = ground.map(|ground| Arc::new(ground.with_water_level(level)));
             read_own(db, file, &mut assembly)?;
@@ -63,7 +80,7 @@ pub(crate) fn read_database(
         }
         None => {
             let mut gathering = Gathering::new(file.to_owned(), name.to_owned());
-            for layer in list_layers(db).map_err(database)? {
+            for layer in foreign_layers(db).map_err(database)? {
                 read_layer(db, &layer, &mut gathering)?;
             }
             gathering.finish(options)
@@ -126,15 +143,16 @@ fn read_own_layer(
 }
 
 /// A layer of somebody else's file.
-struct ForeignLayer {
-    table: String,
-    geometry: String,
+pub(super) struct ForeignLayer {
+    pub table: String,
+    pub geometry: String,
     crs: String,
     definition: String,
     srs_id: i64,
 }
 
-fn list_layers(db: &Connection) -> rusqlite::Result<Vec<ForeignLayer>> {
+/// The layers that the file says hold geometries, by name.
+pub(super) fn foreign_layers(db: &Connection) -> rusqlite::Result<Vec<ForeignLayer>> {
     let mut select = db.prepare(
         "SELECT g.table_name, g.column_name, g.srs_id,
            coalesce(s.organization || ':' || s.organization_coordsys_id, 'number ' || g.srs_id),
@@ -186,26 +204,62 @@ fn read_layer(db: &Connection, layer: &ForeignLayer, into: &mut Gathering) -> Re
 }
 
 fn place(layer: &ForeignLayer, into: &mut Gathering) -> Result<(), Error> {
-    let by_name = || Crs::from_name(&layer.crs);
-    // 0 and -1 are the standard's words for an unknown place: in degrees, and in the plane.
-    let crs = match layer.srs_id {
-        0 => Some(Crs::wgs84()),
-        -1 => None,
-        _ => by_name().or_else(|| Crs::from_wkt(&layer.definition)),
-    };
-    match crs {
-        Some(crs) => into.place(&crs),
-        None if layer.srs_id == -1 => into.leave_placeless(),
-        None if is_in_metres(&layer.definition) => {
-            into.warn(format!(
-                "layer `{}` is in {}, which exurb cannot convert; reproject it to EPSG:4326 to \
-                 give the city its place",
-                layer.table, layer.crs
-            ));
+    match layer.placing(&into.file)? {
+        Placing::At(crs) => into.place(&crs),
+        Placing::Nowhere => {
+            if layer.srs_id != -1 {
+                into.warn(format!(
+                    "layer `{}` is in {}, which exurb cannot convert; reproject it to EPSG:4326 \
+                     to give the city its place",
+                    layer.table, layer.crs
+                ));
+            }
             into.leave_placeless()
         }
-        None => Err(Error::CoordinateSystem { file: into.file.clone(), crs: layer.crs.clone() }),
+        Placing::Unsaid if into.looks_like_metres() => into.leave_placeless(),
+        Placing::Unsaid => {
+            into.warn(format!(
+                "layer `{}` names no coordinate system: its coordinates are taken as degrees",
+                layer.table
+            ));
+            into.place(&Crs::wgs84())
+        }
     }
+}
+
+/// What the coordinates of a layer mean.
+pub(super) enum Placing {
+    /// Places in a system that can be converted.
+    At(Box<Crs>),
+    /// Metres of an unknown place.
+    Nowhere,
+    /// Written by a program that knew no system: the numbers tell.
+    Unsaid,
+}
+
+impl ForeignLayer {
+    /// What its coordinates mean; an error when exurb cannot make metres or places of them.
+    pub fn placing(&self, file: &str) -> Result<Placing, Error> {
+        let crs = match self.srs_id {
+            // 0 and -1 are the standard's words for an unknown place: in degrees, and in the plane.
+            0 => Some(Crs::wgs84()),
+            -1 => return Ok(Placing::Nowhere),
+            _ => Crs::from_name(&self.crs).or_else(|| Crs::from_wkt(&self.definition)),
+        };
+        match crs {
+            Some(crs) => Ok(Placing::At(Box::new(crs))),
+            None if is_undefined(&self.definition) => Ok(Placing::Unsaid),
+            None if is_in_metres(&self.definition) => Ok(Placing::Nowhere),
+            None => Err(Error::CoordinateSystem { file: file.to_owned(), crs: self.crs.clone() }),
+        }
+    }
+}
+
+/// Does the system say that it is unknown, as GDAL's does (`LOCAL_CS["Undefined SRS", ...]`)?
+fn is_undefined(definition: &str) -> bool {
+    let upper = definition.to_ascii_uppercase();
+    let local = ["LOCAL_CS[", "ENGCRS[", "ENGINEERINGCRS["];
+    local.iter().any(|word| upper.starts_with(word)) && upper.contains("\"UNDEFINED")
 }
 
 /// Is the system one of a plane, in metres? Then shapes and sizes are right without a place.
@@ -222,7 +276,7 @@ fn columns(db: &Connection, table: &str) -> rusqlite::Result<Vec<String>> {
     select.query_map([table], |row| row.get(0))?.collect()
 }
 
-fn quoted(name: &str) -> String {
+pub(super) fn quoted(name: &str) -> String {
     format!("\"{}\"", name.replace('"', "\"\""))
 }
 

@@ -93,7 +93,24 @@ fn a_street_drawn_elsewhere_becomes_part_of_the_graph() {
     let imported = read_geopackage(&path, &ImportOptions::default()).unwrap();
     assert_eq!(imported.city.streets.length_m(), city.streets.length_m());
     assert_eq!(imported.city.blocks.len(), 4);
-    assert!(imported.warnings[0].contains("drawn or moved"), "{:?}", imported.warnings);
+    assert!(imported.warnings[0].contains("drawn, moved"), "{:?}", imported.warnings);
+}
+
+#[test]
+fn blocks_are_joined_where_a_street_was_removed_elsewhere() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut city = sample::grid_city(2);
+    city.blocks = Arc::new(exurb_city::block::derive(&city.streets));
+    let (path, _) = written(&city, folder.path(), "a.gpkg");
+    // A side that two blocks share.
+    let middle = GridPoint::m(50.0, 50.0);
+    let inner = city.streets.edges().position(|(_, e)| e.line().contains(&middle)).unwrap();
+    let sql = "DELETE FROM streets WHERE id = ?";
+    without_triggers(&path).execute(sql, [inner as i64 + 1]).unwrap();
+    let imported = read_geopackage(&path, &ImportOptions::default()).unwrap();
+    assert_eq!(imported.city.streets.length_m(), city.streets.length_m() - 50.0);
+    assert_eq!(imported.city.blocks.len(), city.blocks.len() - 1);
+    assert!(imported.warnings[0].contains("removed"), "{:?}", imported.warnings);
 }
 
 #[test]
@@ -242,4 +259,11 @@ fn unknown_grids_keep_their_shape_or_are_refused() {
     foreign(&path, 60_000, "LOCAL_CS[\"town grid\",UNIT[\"foot\",0.3048]]", [5e6, 5e6]);
     let error = read_geopackage(&path, &ImportOptions::default()).unwrap_err().to_string();
     assert!(error.contains("EPSG:60000") && error.contains("reproject"), "{error}");
+
+    let undefined = "LOCAL_CS[\"Undefined SRS\",UNIT[\"unknown\",0]]";
+    let path = folder.path().join("undefined.gpkg");
+    foreign(&path, 99_999, undefined, [5e6, 5e6]);
+    let imported = read_geopackage(&path, &ImportOptions::default()).unwrap();
+    assert_eq!(imported.city.streets.length_m(), 400.0);
+    assert!(imported.warnings.iter().any(|w| w.contains("null island")), "{:?}", imported.warnings);
 }

@@ -10,7 +10,7 @@ use rusqlite::{Connection, ToSql, params};
 use super::{schema, terrain};
 use crate::Error;
 use crate::beside::Beside;
-use crate::layers::{self, Layer, TargetRow};
+use crate::layers::{self, Layer, Streets, TargetRow};
 use crate::metadata;
 use crate::numbered::numbered;
 use crate::value::Value;
@@ -23,15 +23,21 @@ use crate::wkb::{self, Shape};
 /// `exurb_metadata` holds what travels with the city; a terrain is the raster `terrain`. Equal cities give equal files, byte for byte.
 /// An existing file is replaced when the new one is whole. O(n log n), for the R-trees.
 pub fn write_geopackage(city: &City, path: &Path) -> Result<(), Error> {
+    write_geopackage_streets(city, Streets::ALL, path)
+}
+
+/// [`write_geopackage`], of streets and intersections what `streets` says.
+pub fn write_geopackage_streets(city: &City, streets: Streets, path: &Path) -> Result<(), Error> {
     let (beside, _) = Beside::create(path)?;
-    write_database(city, beside.path())
+    write_database(city, streets, beside.path())
         .map_err(|source| Error::WriteDatabase { file: path.display().to_string(), source })?;
     forget_journals(path);
     beside.finish()
 }
 
-/// Journals that another program left beside a replaced file would be played into the new one.
-fn forget_journals(path: &Path) {
+/// Removes the journals that another program left beside a file about to be replaced: they would be
+/// played into the new one.
+pub fn forget_journals(path: &Path) {
     for ending in ["-wal", "-shm", "-journal"] {
         let mut name = path.as_os_str().to_owned();
         name.push(ending);
@@ -40,7 +46,7 @@ fn forget_journals(path: &Path) {
     }
 }
 
-fn write_database(city: &City, path: &Path) -> rusqlite::Result<()> {
+fn write_database(city: &City, streets: Streets, path: &Path) -> rusqlite::Result<()> {
     let city = numbered(city);
     let mut db = Connection::open(path)?;
     schema::prepare(&db)?;
@@ -51,7 +57,7 @@ fn write_database(city: &City, path: &Path) -> rusqlite::Result<()> {
         entries.push((metadata::WATER_LEVEL, level.to_string()));
     }
     schema::write_metadata(&transaction, &entries)?;
-    write_layers(&transaction, &city)?;
+    write_layers(&transaction, &city, streets)?;
     if let Some(ground) = &city.terrain {
         terrain::write(&transaction, ground)?;
     }
@@ -59,9 +65,11 @@ fn write_database(city: &City, path: &Path) -> rusqlite::Result<()> {
     db.close().map_err(|(_, error)| error)
 }
 
-fn write_layers(db: &Connection, city: &City) -> rusqlite::Result<()> {
-    write_layer(db, &layers::STREETS, layers::street_rows(city))?;
-    write_layer(db, &layers::INTERSECTIONS, layers::intersection_rows(city))?;
+fn write_layers(db: &Connection, city: &City, streets: Streets) -> rusqlite::Result<()> {
+    let lines = layers::street_rows(city).filter(|_| streets.lines);
+    write_layer(db, &layers::STREETS, lines)?;
+    let intersections = layers::intersection_rows(city).filter(|_| streets.intersections);
+    write_layer(db, &layers::INTERSECTIONS, intersections)?;
     write_layer(db, &layers::BLOCKS, polygons(&city.blocks, |b| &b.polygon))?;
     write_layer(db, &layers::PARCELS, polygons(&city.parcels, |p| &p.polygon))?;
     write_layer(db, &layers::BUILDINGS, polygons(&city.buildings, |b| &b.polygon))?;

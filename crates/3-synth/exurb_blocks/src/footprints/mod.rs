@@ -59,6 +59,10 @@ impl Operation for Footprints {
         Ok(library)
     }
 
+    fn describe(learned: &Library) -> serde_json::Value {
+        learned.describe_buildings()
+    }
+
     fn edit(
         city: &City,
         scope: &Scope,

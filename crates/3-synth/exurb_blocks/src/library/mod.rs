@@ -13,6 +13,7 @@ mod building_sample;
 mod donor;
 mod example_block;
 mod fronts;
+mod lesson;
 mod open_land;
 
 pub use block_features::{Features, Surroundings};

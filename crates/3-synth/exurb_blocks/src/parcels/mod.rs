@@ -63,6 +63,10 @@ impl Operation for Parcels {
         learn::learn(examples, run)
     }
 
+    fn describe(learned: &Learned) -> serde_json::Value {
+        learned.describe_blocks()
+    }
+
     fn edit(
         city: &City,
         scope: &Scope,

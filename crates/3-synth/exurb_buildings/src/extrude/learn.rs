@@ -1,8 +1,10 @@
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use exurb_city::{Block, Building, City, Roof, block};
 use exurb_geom::{BoxGrid, GridPoint, trig};
 use exurb_operation::{Example, Failure, Run};
+use serde_json::{Value, json};
 
 use super::Params;
 use super::likeness::{self, Likeness};
@@ -41,6 +43,31 @@ const ENOUGH: usize = 5;
 const MOST_SAMPLES: usize = 3000;
 /// Correlation within a block where the example cannot tell.
 const BLOCK_SHARE: f64 = 0.6;
+
+/// What is known, in figures: heights by quartile in metres, shares of roof shapes and uses.
+pub fn describe(learned: &Learned) -> Value {
+    let mut heights: Vec<f64> = learned.heights.iter().filter_map(|s| s.height_m).collect();
+    heights.sort_by(f64::total_cmp);
+    let quartiles = [1, 2, 3].map(|k| heights.get(heights.len().saturating_sub(1) * k / 4));
+    let roofs = learned.roofs.iter().filter_map(|s| s.roof).map(|roof| roof.as_str());
+    let uses = learned.uses.iter().filter_map(|s| s.usage.as_deref());
+    json!({
+        "known_heights": learned.heights.len(),
+        "height_quartiles_m": quartiles,
+        "height_correlation_in_block": learned.block_share,
+        "roofs": shares(roofs),
+        "uses": shares(uses),
+    })
+}
+
+/// The share of each word.
+fn shares<'a>(words: impl Iterator<Item = &'a str>) -> BTreeMap<&'a str, f64> {
+    let mut shares: BTreeMap<&str, f64> = BTreeMap::new();
+    words.for_each(|word| *shares.entry(word).or_default() += 1.0);
+    let total: f64 = shares.values().sum();
+    shares.values_mut().for_each(|share| *share /= total);
+    shares
+}
 
 /// Learns heights, roofs and uses. O(buildings · buildings nearby).
 pub fn learn(examples: &[Example], params: &Params, run: &Run) -> Result<Learned, Failure> {

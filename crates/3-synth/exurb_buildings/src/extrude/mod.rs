@@ -45,6 +45,10 @@ impl Operation for Extrude {
         learn::learn(examples, params, run)
     }
 
+    fn describe(learned: &Learned) -> serde_json::Value {
+        learn::describe(learned)
+    }
+
     fn edit(
         city: &City,
         scope: &Scope,

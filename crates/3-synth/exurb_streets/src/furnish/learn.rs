@@ -6,7 +6,7 @@ use exurb_geom::{BoxGrid, GridPoint, PointIndex, Vec2, polyline};
 use exurb_operation::{Example, Failure, Run};
 
 /// A row of things along a street.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Row {
     /// Usual distance from one to the next in metres.
     pub spacing_m: f64,

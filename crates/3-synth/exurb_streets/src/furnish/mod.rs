@@ -15,6 +15,8 @@ mod synthesize;
 #[cfg(test)]
 mod tests;
 
+use std::collections::BTreeMap;
+
 use exurb_city::{
     Block, BlockClass, City, Class, Edit, Feature, FeatureShape, Origin, Provenance, area, block,
 };
@@ -44,6 +46,16 @@ impl Operation for Furnish {
 
     fn learn(examples: &[Example], _: &Params, run: &Run) -> Result<Learned, Failure> {
         learn::learn(examples, run)
+    }
+
+    fn describe(learned: &Learned) -> serde_json::Value {
+        let park_trees = learned.park_trees.iter().map(|(class, per_m2)| (&**class, per_m2));
+        serde_json::json!({
+            "example": learned.source.as_deref(),
+            "trees": learned.trees,
+            "lamps": learned.lamps,
+            "trees_per_m2_of_open_land": park_trees.collect::<BTreeMap<_, _>>(),
+        })
     }
 
     fn edit(

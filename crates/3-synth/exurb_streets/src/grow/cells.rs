@@ -12,14 +12,15 @@ use exurb_graph::{Dart, EdgeId, Face, Faces, Graph, NodeId, noding};
 use exurb_operation::{Rng, Run, rng};
 use rayon::prelude::*;
 
+use super::claims::Claims;
 use super::error::Error;
 use super::fill;
 use super::growth::{Growth, Place};
 use super::layer::NodeKind;
-use super::learn::Vocabulary;
 use super::network::{Network, Piece, Vertex};
 use super::params::Params;
-use super::synthesize::{self, Start};
+use super::plan::Plan;
+use super::{synthesize, unreached};
 
 /// Distance between the nodes of a main street where local streets may end.
 const BERTH_M: f64 = 18.0;
@@ -46,9 +47,7 @@ pub fn make_berths(net: &mut Network) {
         let mut rest = id;
         for i in 1..count {
             let at = polyline::point_at(&line, total * i as f64 / count as f64);
-            let start = net.graph.node(net.graph.edge(rest).from).data.start;
-            if let Some(node) = net.split(rest, GridPoint::round(at)) {
-                net.graph.node_mut(node).data.start = start;
+            if net.split(rest, GridPoint::round(at)).is_some() {
                 rest = EdgeId(net.graph.edge_bound() as u32 - 1);
             }
         }
@@ -58,9 +57,9 @@ pub fn make_berths(net: &mut Network) {
 /// Grows local streets in every cell of `area` between the main streets of `main`.
 pub fn grow(
     main: &Network,
+    claims: &Claims,
     area: &Polygon,
-    examples: &[&Vocabulary],
-    starts: &[Start],
+    plan: &Plan,
     params: &Params,
     run: &Run,
 ) -> Result<Vec<Grown>, Error> {
@@ -77,18 +76,19 @@ pub fn grow(
         .par_iter()
         .map(|face| {
             let rng = cell_stream(face, run);
-            let (net, seeds) = open_cell(main, &graph, &kinds, &at, face, examples, rng.clone());
-            let mut growth = Growth::new(net, examples, false, &face.polygon, params, rng);
+            let (net, seeds) = open_cell(main, &graph, &kinds, &at, face, plan, rng.clone());
+            let claims = claims.window(&face.polygon);
+            let mut growth = Growth::new(net, plan, false, &face.polygon, params, claims, rng);
             growth.queue.extend(seeds);
             if main.graph.edge_count() == 0 {
-                for (number, start) in starts.iter().enumerate() {
-                    synthesize::begin(&mut growth, number, start);
+                for start in &plan.starts {
+                    synthesize::begin(&mut growth, start);
                 }
             }
             growth.run(run)?;
-            if let Some(example) = examples.first() {
-                fill::fill(&mut growth, example.local.empty_m, run)?;
-            }
+            unreached::lay(&mut growth, run)?;
+            let example = plan.example_at(face.polygon.interior_point());
+            fill::fill(&mut growth, plan.examples[example].local.empty_m, run)?;
             Ok(harvest(&growth.net))
         })
         .collect();
@@ -141,10 +141,11 @@ fn open_cell(
     kinds: &[Option<EdgeId>],
     at: &BTreeMap<GridPoint, NodeId>,
     face: &Face,
-    examples: &[&Vocabulary],
+    plan: &Plan,
     mut rng: Rng,
 ) -> (Network, Vec<Place>) {
-    let street_m = examples.first().map_or(100.0, |e| e.local.statistics.length_mean_m);
+    let example = plan.example_at(face.polygon.interior_point());
+    let street_m = plan.statistics(example, false).length_mean_m;
     let mut net = Network::new(street_m);
     let mut local: BTreeMap<NodeId, NodeId> = BTreeMap::new();
     let mut border: Vec<NodeId> = Vec::new();
@@ -175,29 +176,23 @@ fn open_cell(
 
     let mut places = Vec::new();
     for &node in &border {
-        branches(&net, node, face, examples, &mut places);
+        branches(&net, node, face, plan, &mut places);
     }
-    spaced(&net, face, graph, &local, examples, &mut rng, &mut places);
+    spaced(&net, face, graph, &local, street_m.max(30.0), &mut rng, &mut places);
     (net, places)
 }
 
 /// The example's own side streets at `node` that lead into the cell (Nishida et al. 2015, 4.4).
-fn branches(
-    net: &Network,
-    node: NodeId,
-    face: &Face,
-    examples: &[&Vocabulary],
-    places: &mut Vec<Place>,
-) {
+fn branches(net: &Network, node: NodeId, face: &Face, plan: &Plan, places: &mut Vec<Place>) {
     let n = net.graph.node(node);
-    let Some(link) = n.data.link else { return };
-    let layer = &examples[n.data.start % examples.len()].local.layer;
+    let (Some(link), Some(piece)) = (n.data.link, n.data.piece) else { return };
+    let layer = &plan.examples[piece.example].local.layer;
     let Some(own) = layer.of_example[link.index()] else { return };
     if layer.nodes[own].kind != NodeKind::OnMain {
         return;
     }
     for &end in &layer.nodes[own].ends {
-        let ahead = n.at.to_m() + layer.direction(end) * 5.0;
+        let ahead = n.at.to_m() + piece.motion.apply(layer.direction(end)) * 5.0;
         if face.polygon.contains(GridPoint::round(ahead)) {
             places.push(Place::Branch(node, end));
         }
@@ -210,12 +205,11 @@ fn spaced(
     face: &Face,
     graph: &Graph<(), Option<EdgeId>>,
     local: &BTreeMap<NodeId, NodeId>,
-    examples: &[&Vocabulary],
+    mean_m: f64,
     rng: &mut Rng,
     places: &mut Vec<Place>,
 ) {
     use rand::RngExt;
-    let mean_m = examples.first().map_or(100.0, |e| e.local.statistics.length_mean_m).max(30.0);
     let mut wait_m = mean_m * 0.5;
     for dart in &face.outline {
         let tail = local[&graph.tail(*dart)];

@@ -48,7 +48,8 @@ pub fn fill(growth: &mut Growth, empty_m: f64, run: &Run) -> Result<(), Error> {
     for _ in 0..ROUNDS {
         let mut grew = false;
         for place in places(area, empty_m) {
-            if growth.net.edge_near(place, empty_m).is_some()
+            if growth.claims.owner(place).is_some()
+                || growth.net.edge_near(place, empty_m).is_some()
                 || area.boundary_distance_m(place) < empty_m * 0.3
             {
                 continue;
@@ -69,7 +70,6 @@ pub fn fill(growth: &mut Growth, empty_m: f64, run: &Run) -> Result<(), Error> {
 /// Lays a street from `edge` at `at` towards `place` and queues its end.
 fn set_out(growth: &mut Growth, edge: exurb_graph::EdgeId, at: Vec2, place: Vec2) {
     let e = growth.net.graph.edge(edge);
-    let start = growth.net.graph.node(e.from).data.start;
     let nearest_end = [e.from, e.to]
         .into_iter()
         .min_by(|a, b| {
@@ -81,13 +81,7 @@ fn set_out(growth: &mut Growth, edge: exurb_graph::EdgeId, at: Vec2, place: Vec2
     let node = if e.data.fixed || near < super::network::JOIN_M {
         nearest_end
     } else {
-        match growth.net.split(edge, GridPoint::round(at)) {
-            Some(node) => {
-                growth.net.graph.node_mut(node).data.start = start;
-                node
-            }
-            None => nearest_end,
-        }
+        growth.net.split(edge, GridPoint::round(at)).unwrap_or(nearest_end)
     };
     let direction = place - growth.net.graph.node(node).at.to_m();
     if let Some(direction) = direction.try_normalize() {

@@ -216,11 +216,10 @@ fn shorten(graph: &mut Grown, index: &mut SegmentIndex, dart: Dart, cut_m: f64) 
     let line = graph.dart_line_m(dart);
     let rest = polyline::round(&polyline::part(&line, cut_m, polyline::length(&line)));
     let (tail, head) = (graph.tail(dart), graph.head(dart));
-    let start = graph.node(tail).data.start;
     index.remove_line(dart.edge().0, &graph.edge(dart.edge()).line_m());
     let Some(edge) = graph.remove_edge(dart.edge()) else { return };
     graph.remove_isolated_node(tail);
-    let tip = Vertex { dead_end: true, start, ..Vertex::default() };
+    let tip = Vertex { dead_end: true, ..Vertex::default() };
     let node = graph.add_node(rest[0], tip);
     if let Some(id) = graph.add_edge(node, head, rest, edge.data) {
         index.insert_line(id.0, &graph.edge(id).line_m());

@@ -1,35 +1,43 @@
-//! Growth of one layer inside one area: the queue and its turns.
+//! Growth of one layer inside one area: the queues and their turns.
 //!
-//! Source: Nishida et al. 2015, algorithm 1 and sections 4.3.1-4.3.4. A vertex from the queue 1
-//! follows its example's own next patch (with the probability `continuation`), else 2 is connected
-//! to what lies straight ahead, else 3 takes a patch drawn by eq. (2), else 4 grows from statistics.
-//! The printed algorithm lacks 1 and 2; the authors' program has both, and connects first. We let a
-//! fitting continuation go first, because connecting pre-empts it.
+//! Source: Nishida et al. 2015, algorithm 1 and sections 4.3.1-4.3.4. Inside a piece of the example
+//! that is being copied a vertex follows the example's own next patch; where the piece ends, a
+//! vertex 1 is connected to what lies straight ahead, else 2 takes a patch drawn by eq. (2), with
+//! which the next piece begins, else 3 grows from statistics. The printed algorithm knows 2 and 3
+//! only; the authors' program follows the example wherever it can, and connects before all else.
 
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 use exurb_city::{Origin, Provenance, Street};
 use exurb_geom::{GridPoint, Polygon, Vec2, polyline, trig};
-use exurb_graph::NodeId;
+use exurb_graph::{EdgeId, NodeId};
+use exurb_measure::statistics::StreetStatistics;
 use exurb_operation::{Rng, Run};
 use rand::RngExt;
 
+use super::claims::Claims;
 use super::error::Error;
 use super::layer::{ChainEnd, NodeKind};
-use super::learn::{Style, Vocabulary};
+use super::learn::Style;
 use super::network::{Coherent, Landing, Network, Piece, Vertex, Wish};
 use super::params::Params;
-use super::{drawing, placing, procedural};
+use super::plan::Plan;
+use super::seams::{Leaving, Seams};
+use super::{drawing, placing, procedural, seams};
 
 /// How far a copied piece reaches with a `continuation` of one half, in metres.
 const REACH_M: f64 = 250.0;
+
+/// Streets that no piece holds keep this many times the example's spacing from others.
+const SPACING: f64 = 1.2;
 
 /// Growth of one layer.
 pub struct Growth<'a> {
     /// The network grown into.
     pub net: Network,
-    /// Examples, by number of the start that uses them.
-    pub examples: &'a [&'a Vocabulary],
+    /// What grows where.
+    pub plan: &'a Plan<'a>,
     /// Main streets (or local ones)?
     pub is_main: bool,
     /// The area to fill: places outside are not grown on.
@@ -41,7 +49,11 @@ pub struct Growth<'a> {
     /// Places to grow on: those of the piece that is being copied.
     pub queue: VecDeque<Place>,
     /// Places where that piece ended and another may begin.
-    pub frontier: VecDeque<NodeId>,
+    pub frontier: VecDeque<Open>,
+    /// Streets that leave their pieces.
+    pub seams: Seams,
+    /// Which piece every place belongs to.
+    pub claims: Claims,
     batch: u32,
 }
 
@@ -52,6 +64,15 @@ pub struct Laid {
     pub to: NodeId,
     /// Did it come to its own end, a new node in the open?
     pub is_whole: bool,
+}
+
+/// A place where a piece ended.
+#[derive(Clone, Copy, Debug)]
+pub enum Open {
+    /// A node.
+    Node(NodeId),
+    /// A street that leaves the piece, by its number in [`Growth::seams`].
+    Street(usize),
 }
 
 /// A place to grow on.
@@ -69,34 +90,35 @@ impl<'a> Growth<'a> {
     /// Growth into `net`, with nothing queued.
     pub fn new(
         net: Network,
-        examples: &'a [&'a Vocabulary],
+        plan: &'a Plan<'a>,
         is_main: bool,
         area: &'a Polygon,
         params: &'a Params,
+        claims: Claims,
         rng: Rng,
     ) -> Self {
-        Self {
-            net,
-            examples,
-            is_main,
-            area,
-            params,
-            rng,
-            queue: VecDeque::new(),
-            frontier: VecDeque::new(),
-            batch: 1,
-        }
+        let (queue, frontier) = (VecDeque::new(), VecDeque::new());
+        let seams = Seams::new();
+        Self { net, plan, is_main, area, params, rng, queue, frontier, seams, claims, batch: 1 }
     }
 
-    /// The layer's style for what grew from `start`.
-    pub fn style(&self, start: usize) -> &'a Style {
-        let example = self.example(start);
-        if self.is_main { &example.main } else { &example.local }
+    /// The layer's style in an example.
+    pub fn style(&self, example: usize) -> &'a Style {
+        self.plan.examples[example].style(self.is_main)
     }
 
-    /// The example of `start`.
-    pub fn example(&self, start: usize) -> &'a Vocabulary {
-        self.examples[start % self.examples.len()]
+    /// The statistics of the layer's streets at a node.
+    pub fn statistics(&self, node: NodeId) -> StreetStatistics {
+        let n = self.net.graph.node(node);
+        let own = n.data.piece.map(|piece| piece.example);
+        let example = own.unwrap_or_else(|| self.plan.example_at(n.at.to_m()));
+        self.plan.statistics(example, self.is_main)
+    }
+
+    /// Mean length of the layer's streets at a node, in metres.
+    pub fn street_m(&self, node: NodeId) -> f64 {
+        let mean = self.statistics(node).length_mean_m;
+        if mean > 0.0 { mean } else { 100.0 }
     }
 
     /// A number for pieces laid in one go.
@@ -118,37 +140,60 @@ impl<'a> Growth<'a> {
                 Some(Place::Branch(node, end)) => placing::branch(self, node, end),
                 Some(Place::Away(node, direction)) => drawing::away(self, node, direction),
                 None => match self.frontier.pop_front() {
-                    Some(node) => self.break_off(node),
+                    Some(Open::Node(node)) => self.break_off(node),
+                    Some(Open::Street(number)) => {
+                        if let Some(leaving) = self.seams.take(number) {
+                            seams::leave(self, leaving);
+                        }
+                    }
                     None => return Ok(()),
                 },
             }
         }
     }
 
-    /// One turn of algorithm 1 inside a piece: follows the example, or leaves the place for later.
+    /// One turn inside a piece: follows the example, or leaves the place for later.
     fn turn(&mut self, node: NodeId) {
         let Some(n) = self.net.graph.get_node(node) else { return };
         let (at, vertex) = (n.at, n.data.clone());
         if vertex.outside || vertex.dead_end || !self.area.contains(at) {
             return;
         }
-        let follows = vertex.piece.is_some_and(|piece| piece.holds(at.to_m()));
-        if follows && !self.rng.random_bool(self.params.procedural) {
-            let link = vertex.link.and_then(|l| self.linked_node(l, vertex.start));
-            if link.is_some_and(|own| placing::continuation(self, node, own)) {
-                return;
-            }
+        let at = at.to_m();
+        if let (Some(piece), Some(link)) = (vertex.piece, vertex.link)
+            && self.holds(&piece, at)
+            && piece.example == self.plan.example_at(at)
+            && !self.rng.random_bool(self.params.procedural)
+            && let Some(own) = self.style(piece.example).layer.of_example[link.index()]
+            && placing::continuation(self, node, piece, own)
+        {
+            return;
         }
-        self.frontier.push_back(node);
+        self.frontier.push_back(Open::Node(node));
     }
 
-    /// One turn of algorithm 1 where a piece ended.
-    fn break_off(&mut self, node: NodeId) {
+    /// Lets a street wait that leaves its piece.
+    pub fn let_wait(&mut self, leaving: Leaving) {
+        let number = self.seams.push(leaving);
+        self.frontier.push_back(Open::Street(number));
+    }
+
+    /// Does the ground at `p` belong to `piece`, or does nobody claim it so near to the piece?
+    pub fn is_own(&mut self, piece: &Coherent, p: Vec2) -> bool {
+        // A piece that has not begun yet claims what it reaches.
+        match self.claims.owner(p) {
+            None => p.distance(piece.at) < piece.reach_m,
+            Some(owner) => owner == piece.id,
+        }
+    }
+
+    /// One turn where a piece ended.
+    pub fn break_off(&mut self, node: NodeId) {
         let Some(n) = self.net.graph.get_node(node) else { return };
-        let vertex = n.data.clone();
+        let is_linked = n.data.link.is_some();
         let degree = self.net.graph.degree(node);
         let procedural = self.rng.random_bool(self.params.procedural);
-        if degree > 2 || degree == 0 && vertex.link.is_none() {
+        if degree > 2 || degree == 0 && !is_linked {
             return;
         }
         if degree > 0 && procedural::connect(self, node) {
@@ -160,18 +205,26 @@ impl<'a> Growth<'a> {
         procedural::expand(self, node);
     }
 
-    /// A piece that begins at `origin`. How far it reaches is drawn around
-    /// [`REACH_M`] · c / (1 - c), where c is the parameter `continuation`.
-    pub fn begin_piece(&mut self, origin: Vec2) -> Coherent {
+    /// A piece of `example` that may begin at `at`; it claims nothing yet. How far it reaches is drawn
+    /// around [`REACH_M`] · c / (1 - c), where c is the parameter `continuation`.
+    pub fn piece(&mut self, example: usize, at: Vec2) -> Coherent {
         let c = self.params.continuation;
         let spread = self.rng.random_range(0.7..1.3);
         let reach_m = if c < 1.0 { REACH_M * c / (1.0 - c) * spread } else { f64::INFINITY };
-        Coherent { origin, reach_m }
+        let motion = self.plan.motion_at(at, example);
+        Coherent { id: self.claims.next_id(), example, motion, source: Vec2::ZERO, at, reach_m }
     }
 
-    /// The layer's node that is a copy's original.
-    fn linked_node(&self, link: NodeId, start: usize) -> Option<usize> {
-        self.style(start).layer.of_example[link.index()]
+    /// Claims ground for a piece that begins.
+    pub fn begin(&mut self, piece: &Coherent) {
+        let extent = &self.plan.examples[piece.example].extent;
+        self.claims.begin(piece, |p| extent.contains(GridPoint::round(piece.original(p))));
+    }
+
+    /// Does growth of `piece` go on at `p`?
+    pub fn holds(&mut self, piece: &Coherent, p: Vec2) -> bool {
+        let extent = &self.plan.examples[piece.example].extent;
+        self.claims.holds(piece, p, |p| extent.contains(GridPoint::round(piece.original(p))))
     }
 
     /// Queues a node that has just been made, unless it is to stay as it is.
@@ -182,38 +235,31 @@ impl<'a> Growth<'a> {
         }
     }
 
-    /// The vertex of a copy of the layer's node `own`.
-    pub fn copy_of(&self, own: usize, start: usize, piece: Option<Coherent>) -> Vertex {
-        let node = &self.style(start).layer.nodes[own];
+    /// The vertex of a copy of the layer's node `own` in `piece`.
+    pub fn copy_of(&self, own: usize, piece: Coherent) -> Vertex {
+        let node = &self.style(piece.example).layer.nodes[own];
         Vertex {
             // Beyond the example's edge there is nothing to follow.
             link: (node.kind != NodeKind::Cut).then_some(node.example),
             dead_end: node.kind == NodeKind::DeadEnd,
             outside: false,
-            start,
-            piece,
+            piece: Some(piece),
         }
     }
 
-    /// A piece copied from the example.
-    pub fn copied(
-        &self,
-        street: &Street,
-        start: usize,
-        part: &std::sync::Arc<str>,
-        batch: u32,
-    ) -> Piece {
+    /// A street copied from an example.
+    pub fn copied(&self, street: &Street, example: usize, part: &Arc<str>, batch: u32) -> Piece {
         let mut street = street.clone();
         street.provenance = Provenance {
             origin: Origin::Example,
-            source: Some(self.example(start).name.clone()),
+            source: Some(self.plan.examples[example].name.clone()),
             part: Some(part.clone()),
         };
         street.name = None;
         Piece { street, batch, fixed: false, rim: false }
     }
 
-    /// A piece made without a patch.
+    /// A street made without a patch.
     pub fn made(&self, street: &Street, origin: Origin) -> Piece {
         let street = Street { provenance: Provenance::of(origin), name: None, ..street.clone() };
         Piece { street, batch: 0, fixed: false, rim: false }
@@ -243,7 +289,7 @@ impl<'a> Growth<'a> {
             .filter(|(i, _)| whole || polyline::length(&line[..=*i]) < landed - 12.0)
             .filter_map(|(i, n)| Some((*probe.line.get(*i)?, *n)))
             .collect();
-        let (start, coherent) = (vertex.start, vertex.piece);
+        let coherent = vertex.piece;
         let (to, mut edge) = self.net.commit(node, probe, piece, vertex)?;
         if !self.area.contains(self.net.graph.node(to).at) {
             self.net.graph.node_mut(to).data.outside = true;
@@ -252,9 +298,9 @@ impl<'a> Growth<'a> {
             let at = GridPoint::round(at);
             if let Some(middle) = self.net.split(edge, at) {
                 let data = &mut self.net.graph.node_mut(middle).data;
-                (data.link, data.start, data.piece) = (Some(link), start, coherent);
+                (data.link, data.piece) = (Some(link), coherent);
                 // The rest of the line is the newest edge.
-                edge = exurb_graph::EdgeId(self.net.graph.edge_bound() as u32 - 1);
+                edge = EdgeId(self.net.graph.edge_bound() as u32 - 1);
             }
         }
         Some(Laid { to, is_whole })
@@ -266,6 +312,22 @@ impl<'a> Growth<'a> {
         let on_border =
             self.net.graph.darts(node).iter().any(|d| self.net.graph.edge(d.edge()).data.fixed);
         on_border && !self.area.contains(GridPoint::round(polyline::point_at(line, 0.5)))
+    }
+
+    /// Does a line keep so far from other streets that no block becomes narrower than the example's?
+    /// Towards its ends it may come nearer.
+    pub fn keeps_spacing(&self, node: NodeId, line: &[Vec2]) -> bool {
+        let n = self.net.graph.node(node);
+        let own = n.data.piece.map(|piece| piece.example);
+        let example = own.unwrap_or_else(|| self.plan.example_at(n.at.to_m()));
+        let spacing_m = SPACING * self.style(example).spacing_m;
+        let total = polyline::length(line);
+        let count = (total / 12.0).ceil();
+        (1..count as usize).all(|i| {
+            let along = total * i as f64 / count;
+            let wanted = spacing_m.min(0.6 * along.min(total - along));
+            self.net.street_near(polyline::point_at(line, along), wanted).is_none()
+        })
     }
 
     /// Is a free place there: nothing in the way on the first metres of this direction?

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use exurb_city::street_graph::StreetGraph;
 use exurb_city::{City, Role, block};
-use exurb_geom::{GridPoint, LonLat, Polygon, SegmentIndex, Vec2, polyline};
+use exurb_geom::{GridPoint, LonLat, PointGrid, Polygon, SegmentIndex, Vec2, polyline};
 use exurb_graph::{EdgeId, Faces, NodeId};
 use exurb_measure::statistics::{StreetStatistics, street_statistics};
 
@@ -21,12 +21,16 @@ use super::{detect, fill, prepare};
 pub struct Vocabulary {
     /// Name of the example, for `source`.
     pub name: Arc<str>,
+    /// Its share where examples are mixed.
+    pub weight: f64,
     /// Main streets.
     pub main: Style,
     /// Local streets.
     pub local: Style,
     /// Points along all its streets.
     pub samples: Samples,
+    /// The ground it covers.
+    pub extent: Polygon,
     /// Where growth begins in the example unless told otherwise.
     pub center: Vec2,
     /// Side of a square as large as a large block (the upper quartile), metres.
@@ -42,10 +46,14 @@ pub struct Style {
     pub layer: Layer,
     /// The patches.
     pub patches: Vec<Patch>,
+    /// The layer's nodes by place.
+    pub places: PointGrid,
     /// Every connector, for drawing the next patch.
     pub connectors: Connectors,
     /// Mean and variance of length and curvature.
     pub statistics: StreetStatistics,
+    /// Half of what most blocks between these streets (for local ones: all streets) are wide, metres.
+    pub spacing_m: f64,
     /// A place farther from these streets (for local ones: from all streets) is empty. Metres.
     pub empty_m: f64,
 }
@@ -163,7 +171,13 @@ pub fn learn(city: &City, params: &Params) -> Result<Vocabulary, Error> {
             _ => all.clone(),
         };
         let empty_m = fill::empty_distance_m(&city.target, &streets, &all);
-        Style { layer, patches, connectors, statistics, empty_m }
+        let places: Vec<Vec2> = layer.nodes.iter().map(|node| node.at).collect();
+        let places = PointGrid::new(&places, 100.0);
+        let spacing_m = match role {
+            Role::Main => spacing_m(&graph, |id| is_main[id.index()]),
+            _ => spacing_m(&graph, |_| true),
+        };
+        Style { layer, patches, places, connectors, statistics, spacing_m, empty_m }
     };
     let (main, local) = (style(Role::Main), style(Role::Local));
     if main.patches.is_empty() && local.patches.is_empty() {
@@ -172,7 +186,17 @@ pub fn learn(city: &City, params: &Params) -> Result<Vocabulary, Error> {
     let gates = exurb_city::laws::gates(city);
     let (center, large_block_m) = (center_of(&graph), large_block_m(&graph));
     let samples = Samples::of(graph.edges().map(|(id, e)| (e.line_m(), is_main[id.index()])));
-    Ok(Vocabulary { name, main, local, samples, center, large_block_m, gates })
+    let extent = city.target.clone();
+    Ok(Vocabulary { extent, name, weight: 1.0, main, local, samples, center, large_block_m, gates })
+}
+
+/// Half of the mean width that three quarters of the blocks between these streets have at least.
+fn spacing_m(graph: &StreetGraph, keep: impl Fn(EdgeId) -> bool) -> f64 {
+    let faces = Faces::of(graph, keep).list;
+    let mut widths: Vec<f64> = faces.iter().map(|f| f.polygon.mean_width_m()).collect();
+    widths.retain(|width| *width >= block::ISLAND_WIDTH_M);
+    widths.sort_by(f64::total_cmp);
+    widths.get(widths.len() / 4).map_or(0.0, |width| width / 2.0)
 }
 
 /// Side of a square as large as the upper quartile of the blocks that are no islands.

@@ -14,12 +14,13 @@
 //! junction; local streets never leave their cell, so that cells grow on all cores and the result
 //! does not depend on how many there are; local pieces that alone tie main streets together grow
 //! with these; every street keeps its distance from others, and corners their angle, so that the
-//! laws of the city model hold after every step. Flat land, no warping, blending or interpolation
-//! yet.
+//! laws of the city model hold after every step. The example is followed as far as a piece reaches,
+//! not from vertex to vertex by chance.
 //!
 //! Units: metres, radians. Complexity: O(streets grown · streets nearby). Same seed, same streets.
 
 mod cells;
+mod claims;
 mod detect;
 mod drawing;
 mod edge;
@@ -30,28 +31,34 @@ mod fit;
 mod growth;
 mod layer;
 mod learn;
+mod lesson;
 mod network;
 mod params;
 mod patch;
 mod placing;
+mod plan;
 mod prepare;
 mod procedural;
+mod seams;
+mod starts;
 mod synthesize;
 #[cfg(test)]
 mod tests;
+mod unreached;
 
 use std::sync::Arc;
 
 use exurb_city::hierarchy::{Hierarchy, assign_levels};
 use exurb_city::street_graph::{self, StreetGraph};
 use exurb_city::{City, Edit, block};
-use exurb_geom::{GridPoint, LonLat, Polygon, Vec2};
+use exurb_geom::Polygon;
 use exurb_operation::{Card, Example, Failure, Operation, Run, Scope};
 
 pub use error::Error;
 pub use learn::{Vocabulary, learn};
 pub use params::Params;
-pub use synthesize::{Input, Start, synthesize};
+pub use plan::{Guide, Motion, Plan, Start};
+pub use synthesize::synthesize;
 
 /// `streets grow`.
 #[derive(Debug)]
@@ -79,10 +86,15 @@ impl Operation for Grow {
         let mut vocabularies = Vec::new();
         for example in examples {
             run.check()?;
-            vocabularies.push(learn(&example.city, params).map_err(failure)?);
+            let vocabulary = learn(&example.city, params).map_err(failure)?;
+            vocabularies.push(Vocabulary { weight: example.weight, ..vocabulary });
         }
         let frames = examples.iter().map(|e| e.city.frame.clone()).collect();
         Ok(Learned { vocabularies, frames })
+    }
+
+    fn describe(learned: &Learned) -> serde_json::Value {
+        lesson::describe(&learned.vocabularies)
     }
 
     fn edit(
@@ -96,9 +108,8 @@ impl Operation for Grow {
             Scope::Inside(polygon) => polygon,
             Scope::All | Scope::Blocks(_) => &city.target,
         };
-        let starts = starts(city, target, learned, params).map_err(failure)?;
-        let input = Input { target, examples: &learned.vocabularies, starts };
-        let streets = synthesize(&input, params, run).map_err(failure)?;
+        let plan = learned.plan(city, target, params, run).map_err(failure)?;
+        let streets = synthesize(target, &plan, params, run).map_err(failure)?;
         let mut streets = lawful(city, target, streets, run);
         assign_levels(&mut streets, &Hierarchy::default());
         run.phase("blocks");
@@ -109,6 +120,34 @@ impl Operation for Grow {
             blocks: Some(blocks),
             example_gates: gates,
             ..Edit::default()
+        })
+    }
+}
+
+impl Learned {
+    /// What grows where in `target`.
+    fn plan(
+        &self,
+        city: &City,
+        target: &Polygon,
+        params: &Params,
+        run: &Run,
+    ) -> Result<Plan<'_>, Error> {
+        let (examples, frames) = (&self.vocabularies[..], &self.frames[..]);
+        if params.interpolation.is_some() && examples.len() != 2 {
+            let count = examples.len();
+            return Err(Error::Params(format!(
+                "`interpolation` mixes two examples, not {count}; name two with --example"
+            )));
+        }
+        Ok(Plan {
+            examples,
+            starts: starts::starts(city, target, examples, frames, params)?,
+            blend_m: params.blend * target.bounds().size().max_element(),
+            interpolation: params.interpolation,
+            rotate_rad: params.rotate.to_radians(),
+            guide: starts::guide(city, frames, params)?,
+            seed: run.seed(),
         })
     }
 }
@@ -146,61 +185,6 @@ fn lawful(city: &City, target: &Polygon, streets: StreetGraph, run: &Run) -> Str
         checked.streets = Arc::new(graph.compacted());
     }
     Arc::unwrap_or_clone(checked.streets)
-}
-
-/// Where growth begins: as told, else spread over the target, the first in its middle.
-fn starts(
-    city: &City,
-    target: &Polygon,
-    learned: &Learned,
-    params: &Params,
-) -> Result<Vec<Start>, Error> {
-    let count = learned.vocabularies.len();
-    let start = |i: usize, at: Vec2, source: Option<Vec2>| {
-        let example = i % count;
-        Start { at, example, source: source.unwrap_or(learned.vocabularies[example].center) }
-    };
-    if params.start.is_empty() {
-        let places = spread(target, (params.starts as usize).max(count));
-        return Ok(places.into_iter().enumerate().map(|(i, at)| start(i, at, None)).collect());
-    }
-    let mut out = Vec::new();
-    for (i, text) in params.start.iter().enumerate() {
-        let (place, source) = params::parse_start(text).map_err(Error::Params)?;
-        let at = city
-            .frame
-            .project(LonLat { lon: place.0, lat: place.1 })
-            .filter(|p| target.contains(GridPoint::round(*p)))
-            .ok_or_else(|| Error::StartOutside(text.clone()))?;
-        let source = match source {
-            Some((lon, lat)) => learned.frames[i % count].project(LonLat { lon, lat }),
-            None => None,
-        };
-        out.push(start(i, at, source));
-    }
-    Ok(out)
-}
-
-/// `count` places in the polygon: its interior point, then each as far as possible from the others
-/// and the edge, on a grid of about 40 × 40.
-fn spread(target: &Polygon, count: usize) -> Vec<Vec2> {
-    let mut places = vec![target.interior_point()];
-    let bounds = target.bounds();
-    let step = bounds.size() / 40.0;
-    let grid: Vec<Vec2> = (1..40)
-        .flat_map(|y| (1..40).map(move |x| Vec2::new(f64::from(x), f64::from(y))))
-        .map(|k| bounds.min + k * step)
-        .filter(|p| target.contains(GridPoint::round(*p)))
-        .collect();
-    while places.len() < count {
-        let room = |p: &Vec2| {
-            let others = places.iter().map(|q| q.distance(*p)).fold(f64::INFINITY, f64::min);
-            others.min(2.0 * target.boundary_distance_m(*p))
-        };
-        let Some(next) = grid.iter().max_by(|a, b| room(a).total_cmp(&room(b))) else { break };
-        places.push(*next);
-    }
-    places
 }
 
 fn failure(error: Error) -> Failure {

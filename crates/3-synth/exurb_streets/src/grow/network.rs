@@ -8,6 +8,9 @@ use exurb_city::Street;
 use exurb_geom::{Bounds, GridPoint, PointIndex, SegmentIndex, Vec2, grid, polyline, trig};
 use exurb_graph::{Dart, EdgeId, Graph, NodeId};
 
+use super::fit::fourfold;
+use super::plan::Motion;
+
 /// No two streets run nearer than this, but where they meet.
 pub const CLEARANCE_M: f64 = 7.0;
 /// Near a shared node clearance is not asked for: corners are judged by their angle.
@@ -30,8 +33,6 @@ pub struct Vertex {
     pub dead_end: bool,
     /// Lies at or beyond the edge of the grown area: not grown on, no dead end.
     pub outside: bool,
-    /// The start it grew from: tells the example.
-    pub start: usize,
     /// The copied piece it belongs to.
     pub piece: Option<Coherent>,
 }
@@ -39,16 +40,29 @@ pub struct Vertex {
 /// A piece of the example that is copied without a break.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coherent {
+    /// Its number in [`super::claims::Claims`].
+    pub id: u32,
+    /// Number of the example.
+    pub example: usize,
+    /// How the example is moved.
+    pub motion: Motion,
+    /// The place in the example that lies on `at`.
+    pub source: Vec2,
     /// Where it began.
-    pub origin: Vec2,
-    /// How far from there growth follows the example.
+    pub at: Vec2,
+    /// How far from there it reaches.
     pub reach_m: f64,
 }
 
 impl Coherent {
-    /// Does growth at `p` still follow the example?
-    pub fn holds(self, p: Vec2) -> bool {
-        p.distance(self.origin) < self.reach_m
+    /// Where the example's place `p` lies.
+    pub fn place(&self, p: Vec2) -> Vec2 {
+        self.at + self.motion.apply(p - self.source)
+    }
+
+    /// The place of the example that lies on `p`.
+    pub fn original(&self, p: Vec2) -> Vec2 {
+        self.source + self.motion.undo(p - self.at)
     }
 }
 
@@ -197,6 +211,21 @@ impl Network {
         best.map(|(_, id, q)| (EdgeId(id), q))
     }
 
+    /// The mean of the directions of streets near `p`, each with its angle multiplied by four: long
+    /// where they run in two directions at right angles, short where they run anyhow.
+    pub fn grain_near(&self, p: Vec2, radius_m: f64) -> Vec2 {
+        let (mut sum, mut total) = (Vec2::ZERO, 0.0);
+        self.segments.visit(Bounds { min: p - radius_m, max: p + radius_m }, |e| {
+            if !self.graph.edge(EdgeId(e.id)).data.rim {
+                let length = e.a.distance(e.b);
+                sum += fourfold((e.b - e.a) / length.max(1e-9)) * length;
+                total += length;
+            }
+            true
+        });
+        if total > 0.0 { sum / total } else { Vec2::ZERO }
+    }
+
     /// Distance and direction of the nearest street within `radius_m` of `p`.
     pub fn street_near(&self, p: Vec2, radius_m: f64) -> Option<(f64, Vec2)> {
         let mut best: Option<(f64, Vec2)> = None;
@@ -274,12 +303,8 @@ impl Network {
             }
             Landing::Edge(edge, at) => {
                 line[last] = at;
-                let start = vertex.start;
                 match self.split(edge, at) {
-                    Some(node) => {
-                        self.graph.node_mut(node).data.start = start;
-                        node
-                    }
+                    Some(node) => node,
                     // The point rounds to an end of the edge.
                     None => {
                         let e = self.graph.edge(edge);
@@ -568,7 +593,7 @@ fn meet(a: Vec2, b: Vec2, c: Vec2, d: Vec2) -> Option<(f64, Vec2)> {
 
 /// Moves the end of `line` to `end`; the shift fades out towards the start, over at most the last
 /// 60 m and at least four times its own length where the line has it.
-fn bend(line: &[Vec2], end: Vec2) -> Vec<Vec2> {
+pub fn bend(line: &[Vec2], end: Vec2) -> Vec<Vec2> {
     let total = polyline::length(line);
     let shift = end - line[line.len() - 1];
     if shift.length() < 1e-9 {

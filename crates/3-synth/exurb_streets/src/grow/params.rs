@@ -21,6 +21,25 @@ pub struct Params {
     /// A place where growth begins, as `LON,LAT` in the target or `LON,LAT=LON,LAT` with the place
     /// in the example that it begins with. Replaces `starts`.
     pub start: Vec<String>,
+    /// Width of the transition between several examples, as a share of the target's longer side: 0
+    /// changes the style at once where the next start is nearer.
+    #[schemars(range(min = 0.0, max = 10.0))]
+    pub blend: f64,
+    /// Mixes two examples everywhere instead: the share of the first. Streets get the mean length and
+    /// curvature of both; with `procedural` 1 they grow from these alone.
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub interpolation: Option<f64>,
+    /// A point of a guideline, as `LON,LAT=LON,LAT` with its place in the example, in order along the
+    /// line: the example is bent so that its line follows this one. Replaces `start`.
+    pub guide: Vec<String>,
+    /// Turns the example against the target, counter-clockwise.
+    #[schemars(range(min = -360.0, max = 360.0), extend("x-unit" = "°"))]
+    pub rotate: f64,
+    /// Pieces of the example may be turned by up to this to fit.
+    #[schemars(range(min = 0.0, max = 180.0), extend("x-unit" = "°"))]
+    pub turn_pieces: f64,
+    /// Pieces of the example may be mirrored to fit.
+    pub mirror_pieces: bool,
     /// Main junctions nearer than this along a street belong to one patch.
     #[schemars(range(min = 0.0, max = 500.0), extend("x-unit" = "m"))]
     pub main_reach: f64,
@@ -43,10 +62,16 @@ pub struct Params {
 impl Default for Params {
     fn default() -> Self {
         Self {
-            continuation: 0.3,
+            continuation: 0.5,
             procedural: 0.0,
             starts: 1,
             start: Vec::new(),
+            blend: 0.1, // half the authors' program's, as eq. (4) has it
+            interpolation: None,
+            guide: Vec::new(),
+            rotate: 0.0,
+            turn_pieces: 0.0,
+            mirror_pieces: false,
             main_reach: 80.0,  // the authors' program
             local_reach: 20.0, // the authors' program
             keep: Vec::new(),
@@ -61,6 +86,12 @@ impl exurb_operation::Params for Params {
     fn check(&self) -> Result<(), String> {
         for start in &self.start {
             parse_start(start)?;
+        }
+        if self.guide.len() == 1 {
+            return Err(format!("`guide` is the one point {}, a line needs two", self.guide[0]));
+        }
+        for point in &self.guide {
+            parse_start(point)?;
         }
         for keep in &self.keep {
             parse_ring(keep)?;

@@ -10,7 +10,6 @@ use rand_distr::{Distribution, Normal};
 
 use super::growth::Growth;
 use super::network::{Landing, Vertex, Wish};
-use super::placing::street_m;
 
 /// Pieces of a procedural street.
 const STEPS: usize = 5;
@@ -23,8 +22,8 @@ const LEAST_ANGLE_RAD: f64 = PI / 3.0;
 /// straight ahead first). Returns whether it did.
 pub fn connect(growth: &mut Growth, node: NodeId) -> bool {
     let n = growth.net.graph.node(node);
-    let (at, vertex) = (n.at.to_m(), n.data.clone());
-    let reach_m = street_m(growth, vertex.start).min(250.0);
+    let at = n.at.to_m();
+    let reach_m = growth.street_m(node).min(250.0);
     let street = street_like(growth, node);
     let ahead: Vec<Vec2> = growth
         .net
@@ -102,10 +101,9 @@ pub fn expand(growth: &mut Growth, node: NodeId) {
 
 /// Grows one street from statistics in about that direction, and queues its end.
 pub fn step(growth: &mut Growth, node: NodeId, direction: Vec2) {
-    let vertex = growth.net.graph.node(node).data.clone();
-    let (at, start) = (growth.net.graph.node(node).at.to_m(), vertex.start);
-    let statistics = growth.style(start).statistics;
-    let mean_m = street_m(growth, start);
+    let at = growth.net.graph.node(node).at.to_m();
+    let statistics = growth.statistics(node);
+    let mean_m = growth.street_m(node);
     let length_m = positive_normal(growth, mean_m, statistics.length_variance_m2)
         .clamp(0.5 * mean_m, 2.0 * mean_m)
         .max(30.0);
@@ -125,8 +123,7 @@ pub fn step(growth: &mut Growth, node: NodeId, direction: Vec2) {
     }
     let street = street_like(growth, node);
     let piece = growth.made(&street, Origin::Procedural);
-    let tip = Vertex { start, ..Vertex::default() };
-    if let Some(laid) = growth.lay(node, &line, Wish::free(0), piece, tip, &[])
+    if let Some(laid) = growth.lay(node, &line, Wish::free(0), piece, Vertex::default(), &[])
         && laid.is_whole
     {
         growth.enqueue(laid.to);

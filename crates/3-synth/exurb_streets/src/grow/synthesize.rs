@@ -3,111 +3,106 @@
 use std::collections::BTreeMap;
 
 use exurb_city::street_graph::StreetGraph;
-use exurb_geom::{GridPoint, Polygon, Vec2, offset};
+use exurb_geom::{GridPoint, Polygon, offset};
 use exurb_graph::{Graph, NodeId};
 use exurb_operation::Run;
 
 use super::cells::{self, Grown};
+use super::claims::Claims;
 use super::error::Error;
 use super::growth::{Growth, Place};
-use super::learn::Vocabulary;
-use super::network::{Network, Piece, Vertex};
+use super::network::{Coherent, Network, Piece, Vertex};
 use super::params::Params;
 use super::placing;
-use super::{fill, finish};
+use super::plan::{Plan, Start};
+use super::{fill, finish, unreached};
 
 /// Growth goes on beyond the target by a large block of the example, so that blocks at its edge close
 /// and its edge looks like its middle; by no more and no less than this.
 const MARGIN_M: std::ops::RangeInclusive<f64> = 90.0..=350.0;
 
-/// What growth works on.
-#[derive(Debug)]
-pub struct Input<'a> {
-    /// The area to fill.
-    pub target: &'a Polygon,
-    /// The examples.
-    pub examples: &'a [Vocabulary],
-    /// Where growth begins.
-    pub starts: Vec<Start>,
-}
-
-/// A place where growth begins.
-#[derive(Clone, Copy, Debug)]
-pub struct Start {
-    /// The place in the target.
-    pub at: Vec2,
-    /// Number of the example.
-    pub example: usize,
-    /// The place in the example that it begins with.
-    pub source: Vec2,
-}
-
-/// Grows streets in the target.
-pub fn synthesize(input: &Input, params: &Params, run: &Run) -> Result<StreetGraph, Error> {
-    let margin_m = input.examples.iter().map(|e| e.large_block_m).fold(0.0, f64::max);
-    let grown = offset::inset(input.target, -margin_m.clamp(*MARGIN_M.start(), *MARGIN_M.end()));
-    let area = grown.first().unwrap_or(input.target);
-    let examples: Vec<&Vocabulary> =
-        input.starts.iter().map(|s| &input.examples[s.example]).collect();
+/// Grows streets in `target`.
+pub fn synthesize(
+    target: &Polygon,
+    plan: &Plan,
+    params: &Params,
+    run: &Run,
+) -> Result<StreetGraph, Error> {
+    let margin_m = plan.examples.iter().map(|e| e.large_block_m).fold(0.0, f64::max);
+    let grown = offset::inset(target, -margin_m.clamp(*MARGIN_M.start(), *MARGIN_M.end()));
+    let area = grown.first().unwrap_or(target);
 
     run.phase("main streets");
-    let mut main = grow_main(input, &examples, area, params, run)?;
+    let (mut main, claims) = grow_main(plan, area, params, run)?;
     if params.remove_dangling {
-        remove_open_ends(&mut main, &examples);
+        remove_open_ends(&mut main, plan);
     }
     cells::make_berths(&mut main);
 
     run.phase("local streets");
-    let local = cells::grow(&main, area, &examples, &input.starts, params, run)?;
+    let local = cells::grow(&main, &claims, area, plan, params, run)?;
 
     run.phase("finish");
     let graph = join(main, local);
-    let share = examples.first().and_then(|e| e.gates.get("dead_end_share")).copied();
-    let streets = finish::finish(graph, input.target, share, params.remove_dangling);
+    let streets = finish::finish(graph, target, dead_end_share(plan), params.remove_dangling);
     if streets.edge_count() == 0 {
-        let area_km2 = input.target.area_m2() / 1e6;
-        return Err(Error::Nothing { starts: input.starts.len(), area_km2 });
+        let area_km2 = target.area_m2() / 1e6;
+        return Err(Error::Nothing { starts: plan.starts.len(), area_km2 });
     }
     Ok(streets)
 }
 
+/// The share of dead ends to aim at: the mean of the examples' shares by their weights.
+fn dead_end_share(plan: &Plan) -> Option<f64> {
+    let (mut sum, mut total) = (0.0, 0.0);
+    for start in &plan.starts {
+        let example = &plan.examples[start.example];
+        sum += example.weight * example.gates.get("dead_end_share")?;
+        total += example.weight;
+    }
+    (total > 0.0).then(|| sum / total)
+}
+
 fn grow_main(
-    input: &Input,
-    examples: &[&Vocabulary],
+    plan: &Plan,
     area: &Polygon,
     params: &Params,
     run: &Run,
-) -> Result<Network, Error> {
-    let street_m = examples.first().map_or(100.0, |e| e.main.statistics.length_mean_m);
-    let mut growth =
-        Growth::new(Network::new(street_m), examples, true, area, params, run.stream(0));
-    for (i, start) in input.starts.iter().enumerate() {
-        begin(&mut growth, i, start);
+) -> Result<(Network, Claims), Error> {
+    let first = plan.example_at(area.interior_point());
+    let net = Network::new(plan.statistics(first, true).length_mean_m);
+    let claims = Claims::new(area);
+    let mut growth = Growth::new(net, plan, true, area, params, claims, run.stream(0));
+    for start in &plan.starts {
+        begin(&mut growth, start);
     }
     growth.run(run)?;
+    unreached::lay(&mut growth, run)?;
     if growth.net.graph.edge_count() > 0 {
-        fill::fill(&mut growth, examples[0].main.empty_m, run)?;
+        fill::fill(&mut growth, plan.examples[first].main.empty_m, run)?;
     }
-    Ok(growth.net)
+    Ok((growth.net, growth.claims))
 }
 
 /// Begins growth at a start: the first of the nearest junctions of the example whose patch can lie
 /// there. The start's place in the target belongs to its place in the example, not to the junction
 /// nearest to that.
-pub fn begin(growth: &mut Growth, number: usize, start: &Start) {
+pub fn begin(growth: &mut Growth, start: &Start) {
     const TRIES: usize = 24;
-    let style = growth.style(number);
-    let shift = start.at - start.source;
+    let style = growth.style(start.example);
+    let motion = growth.plan.motion_at(start.at, start.example);
     for own in style.starts_near(start.source).into_iter().take(TRIES) {
-        let mut at = style.layer.nodes[own].at + shift;
+        let mut at = start.at + motion.apply(style.layer.nodes[own].at - start.source);
         if !growth.area.contains(GridPoint::round(at)) {
             at = start.at;
         }
         let link = Some(style.layer.nodes[own].example);
-        let piece = Some(growth.begin_piece(at));
-        let vertex = Vertex { link, start: number, piece, ..Vertex::default() };
+        let source = style.layer.nodes[own].at;
+        let piece = Coherent { source, ..growth.piece(start.example, at) };
+        let vertex = Vertex { link, piece: Some(piece), ..Vertex::default() };
         let node = growth.net.add_node(GridPoint::round(at), vertex);
-        if placing::continuation(growth, node, own) {
+        if placing::continuation(growth, node, piece, own) {
+            growth.begin(&piece);
             growth.queue.push_back(Place::Node(node));
             return;
         }
@@ -117,15 +112,15 @@ pub fn begin(growth: &mut Growth, number: usize, start: &Start) {
 
 /// Removes main streets that end where nothing goes on, in the example or here. A main street that
 /// becomes a local one there keeps its end: the local street will grow from it.
-fn remove_open_ends(net: &mut Network, examples: &[&Vocabulary]) {
+fn remove_open_ends(net: &mut Network, plan: &Plan) {
     let mut open: Vec<NodeId> = net.graph.nodes().map(|(id, _)| id).collect();
     while let Some(node) = open.pop() {
         let Some(n) = net.graph.get_node(node) else { continue };
         if n.data.dead_end || n.data.outside || net.graph.degree(node) != 1 {
             continue;
         }
-        let example = examples[n.data.start % examples.len()];
-        let goes_on = n.data.link.is_some_and(|link| {
+        let goes_on = n.data.link.zip(n.data.piece).is_some_and(|(link, piece)| {
+            let example = &plan.examples[piece.example];
             let main = example.main.layer.of_example[link.index()];
             let ends_here = main.is_some_and(|m| example.main.layer.nodes[m].ends.len() == 1);
             ends_here && example.local.layer.of_example[link.index()].is_some()

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 use exurb_recipe::{Export, Recipe, Registry, Source, Step, builtin};
 
-use crate::options::{ExampleOptions, RunOptions, TargetOptions, TerrainOptions};
-use crate::output::{self, Outputs};
+use crate::options::{ExampleOptions, RunOptions, SeedOptions, TargetOptions, TerrainOptions};
+use crate::output::{Folder, Outputs};
 use crate::pending::Pending;
 use crate::problem::Problem;
 use crate::{job, report, summary};
@@ -21,16 +21,14 @@ struct Options {
     #[arg(long, value_name = "NAME", default_value = builtin::NAMES[0],
           value_parser = builtin::NAMES, conflicts_with = "examples")]
     style: String,
-    /// Random seed: another number, another city
-    #[arg(long, value_name = "N", default_value_t = 1,
-          allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
-    seed: u64,
     #[command(flatten)]
     examples: ExampleOptions,
     #[command(flatten)]
     target: TargetOptions,
     #[command(flatten)]
     terrain: TerrainOptions,
+    #[command(flatten)]
+    seed: SeedOptions,
     #[command(flatten)]
     run: RunOptions,
 }
@@ -60,16 +58,20 @@ pub fn command() -> Command {
 /// Runs it.
 pub fn run(matches: &ArgMatches, registry: &Registry) -> Result<(), Problem> {
     let options = Options::from_arg_matches(matches).map_err(|e| Problem::usage(e.to_string()))?;
-    let folder = &options.output;
+    let (here, folder) = (Path::new(""), &options.output);
     let recipe = recipe(&options);
-    output::make_folder(folder)?;
+    if options.seed.dry_run {
+        job::work(&options.run, recipe.seed, |run| Ok(recipe.read(here, registry, run)?))?;
+        return summary::recipe(&recipe, &options.run);
+    }
+    let made_folder = Folder::make(folder)?;
     let (made, example) = job::work(&options.run, recipe.seed, |run| {
         let outputs = Outputs::prepare(&recipe.exports, folder)?;
         let texts = ["recipe.toml", "ATTRIBUTION.txt"].map(|name| Pending::new(&folder.join(name)));
         let [recipe_file, attribution_file] = texts;
-        let inputs = recipe.read(Path::new(""), registry, run)?;
+        let inputs = recipe.read(here, registry, run)?;
         let example = inputs.examples.first().map(|e| e.city.clone());
-        let mut made = recipe.make(inputs, Path::new(""), registry, run)?;
+        let mut made = recipe.make(inputs, here, registry, run)?;
         made.seconds.write = outputs.write(&made.city, run)?;
         for (file, text) in
             [(recipe_file?, recipe.print()?), (attribution_file?, credits(&made.city))]
@@ -79,6 +81,7 @@ pub fn run(matches: &ArgMatches, registry: &Registry) -> Result<(), Problem> {
         }
         Ok((made, example))
     })?;
+    made_folder.keep();
     summary::report(&made.city, example.as_deref(), made.seconds, &[], &options.run)?;
     if !options.run.json && !options.run.quiet {
         report::result(&next_steps(folder))?;
@@ -98,7 +101,7 @@ fn recipe(options: &Options) -> Recipe {
         examples.push(options.examples.part.apply(Source::new(style)));
     }
     Recipe {
-        seed: options.seed,
+        seed: options.seed.seed,
         target: Some(options.target.target()),
         terrain: options.terrain.source(),
         examples,

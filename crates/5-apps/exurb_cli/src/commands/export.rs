@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 use exurb_recipe::{Export, Source};
 
-use crate::options::{OutputOptions, PartOptions, RunOptions};
+use crate::options::{DryOptions, OutputOptions, PartOptions, RunOptions};
 use crate::output::Outputs;
 use crate::problem::Problem;
 use crate::{job, summary};
@@ -16,12 +16,14 @@ struct Options {
     city: PathBuf,
     #[command(flatten)]
     output: OutputOptions,
-    /// Write this layer alone: streets, blocks, parcels, buildings, features, water, land_use or
-    /// terrain (.tif or .png: a height map)
+    /// Write this layer alone: streets, intersections, blocks, parcels, buildings, features, water,
+    /// land_use or terrain (.tif or .png: a height map)
     #[arg(long, value_name = "LAYER")]
     layer: Option<String>,
     #[command(flatten)]
     part: PartOptions,
+    #[command(flatten)]
+    dry: DryOptions,
     #[command(flatten)]
     run: RunOptions,
 }
@@ -45,7 +47,8 @@ pub fn run(matches: &ArgMatches) -> Result<(), Problem> {
     job::work(&options.run, 1, |run| {
         let outputs = Outputs::prepare(&[export], Path::new(""))?;
         let city = exurb_recipe::read_source(&source, Path::new(""), run)?;
-        outputs.write(&city, run).map(|_| ())
+        if options.dry.dry_run { Ok(()) } else { outputs.write(&city, run).map(|_| ()) }
     })?;
-    summary::written(&[&options.output.output], &options.run)
+    let files: &[&PathBuf] = if options.dry.dry_run { &[] } else { &[&options.output.output] };
+    summary::written(files, &options.run)
 }

@@ -8,7 +8,7 @@ use exurb_city::{City, Imported};
 use exurb_operation::Run;
 use exurb_recipe::{Export, Seconds, Source};
 
-use crate::options::{OutputOptions, PartOptions, RunOptions, TerrainOptions};
+use crate::options::{DryOptions, OutputOptions, PartOptions, RunOptions, TerrainOptions};
 use crate::output::Outputs;
 use crate::problem::Problem;
 use crate::{job, summary};
@@ -25,6 +25,8 @@ struct Options {
     part: PartOptions,
     #[command(flatten)]
     terrain: TerrainOptions,
+    #[command(flatten)]
+    dry: DryOptions,
     #[command(flatten)]
     run: RunOptions,
 }
@@ -45,10 +47,11 @@ pub fn run(matches: &ArgMatches) -> Result<(), Problem> {
         let started = Instant::now();
         let city = read(&options, run)?;
         let read = started.elapsed().as_secs_f64();
-        let write = outputs.write(&city, run)?;
+        let write = if options.dry.dry_run { 0.0 } else { outputs.write(&city, run)? };
         Ok((city, Seconds { read, write, ..Seconds::default() }))
     })?;
-    summary::report(&city, None, seconds, &[&output], &options.run)
+    let files: &[&PathBuf] = if options.dry.dry_run { &[] } else { &[&output] };
+    summary::report(&city, None, seconds, files, &options.run)
 }
 
 fn read(options: &Options, run: &Run) -> Result<City, Problem> {

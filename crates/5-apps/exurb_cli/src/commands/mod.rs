@@ -1,5 +1,6 @@
 //! The commands, a file for each.
 
+mod compare;
 mod completions;
 mod demo;
 mod export;
@@ -40,6 +41,7 @@ pub fn app(registry: &Registry) -> Command {
         .subcommands(stages)
         .subcommand(export::command())
         .subcommand(render::command())
+        .subcommand(compare::command())
         .subcommand(learn::command())
         .subcommand(schema::command())
         .subcommand(completions::command())
@@ -54,7 +56,8 @@ pub fn dispatch(matches: &ArgMatches, registry: &Registry) -> Result<(), Problem
         Some(("info", matches)) => info::run(matches),
         Some(("export", matches)) => export::run(matches),
         Some(("render", matches)) => render::run(matches),
-        Some(("learn", matches)) => learn::run(matches),
+        Some(("compare", matches)) => compare::run(matches),
+        Some(("learn", matches)) => learn::run(matches, registry),
         Some(("schema", matches)) => schema::run(matches, registry),
         Some(("completions", matches)) => completions::run(matches, registry),
         Some((stage, matches)) => method::run(stage, matches, registry),

@@ -6,7 +6,7 @@ use clap::{ArgMatches, Args, Command, FromArgMatches};
 use exurb_recipe::{Export, Source};
 
 use crate::format::Format;
-use crate::options::{OutputOptions, PartOptions, RunOptions};
+use crate::options::{DryOptions, OutputOptions, PartOptions, RunOptions};
 use crate::output::Outputs;
 use crate::problem::Problem;
 use crate::{job, summary};
@@ -36,13 +36,15 @@ struct Options {
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
     azimuth: Option<f64>,
     /// Perspective: how high it stands over the horizon, in degrees [default: 30]
-    #[arg(long, value_name = "DEGREES")]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
     elevation: Option<f64>,
     /// Perspective: 1 fills the picture with the city, 2 with half of it [default: 1]
-    #[arg(long, value_name = "FACTOR")]
+    #[arg(long, value_name = "FACTOR", allow_negative_numbers = true)]
     zoom: Option<f64>,
     #[command(flatten)]
     part: PartOptions,
+    #[command(flatten)]
+    dry: DryOptions,
     #[command(flatten)]
     run: RunOptions,
 }
@@ -50,7 +52,8 @@ struct Options {
 /// The command.
 pub fn command() -> Command {
     let about = "Draw a city: the map from above, or a perspective picture";
-    Options::augment_args(Command::new("render")).about(about)
+    let command = Options::augment_args(Command::new("render")).about(about);
+    command.mut_arg("to", |to| to.value_parser(["png", "svg"]))
 }
 
 /// Runs it.
@@ -77,7 +80,8 @@ pub fn run(matches: &ArgMatches) -> Result<(), Problem> {
     job::work(&options.run, 1, |run| {
         let outputs = Outputs::prepare(&[export], Path::new(""))?;
         let city = exurb_recipe::read_source(&source, Path::new(""), run)?;
-        outputs.write(&city, run).map(|_| ())
+        if options.dry.dry_run { Ok(()) } else { outputs.write(&city, run).map(|_| ()) }
     })?;
-    summary::written(&[output], &options.run)
+    let files: &[&PathBuf] = if options.dry.dry_run { &[] } else { &[output] };
+    summary::written(files, &options.run)
 }

@@ -6,7 +6,7 @@ use clap::{ArgMatches, Args, Command, FromArgMatches};
 use exurb_recipe::{Export, Recipe, Registry};
 
 use crate::options::RunOptions;
-use crate::output::{self, Outputs};
+use crate::output::{Folder, Outputs};
 use crate::problem::Problem;
 use crate::{job, summary};
 
@@ -62,7 +62,7 @@ pub fn perform(
     options: &RunOptions,
     registry: &Registry,
 ) -> Result<(), Problem> {
-    output::make_folder(into)?;
+    let folder_made = Folder::make(into)?;
     let (made, example) = job::work(options, recipe.seed, |run| {
         let outputs = Outputs::prepare(&recipe.exports, into)?;
         let inputs = recipe.read(folder, registry, run)?;
@@ -71,6 +71,7 @@ pub fn perform(
         made.seconds.write = outputs.write(&made.city, run)?;
         Ok((made, example))
     })?;
+    folder_made.keep();
     let files: Vec<PathBuf> = recipe.exports.iter().map(|e| into.join(&e.file)).collect();
     let files: Vec<&PathBuf> = files.iter().collect();
     summary::report(&made.city, example.as_deref(), made.seconds, &files, options)

@@ -50,7 +50,7 @@ fn every_format_is_written_and_the_readable_ones_are_read_again() {
         assert!(size > 100, "{name} has {size} bytes");
         if ["gpkg", "geojson", "osm", "osm.gz", "osm.pbf"].contains(&ending) {
             let again = km(&name);
-            assert!((again - expected).abs() < 0.1 * expected, "{name}: {again} of {expected} km");
+            assert!((again / expected - 1.0).abs() < 1e-4, "{name}: {again} of {expected} km");
         }
     }
     exurb(folder.path(), &["export", "c.gpkg", "-o", "model.dat", "--to", "glb"]).ends(0);
@@ -70,6 +70,72 @@ fn a_layer_can_be_exported_alone() {
     exurb(folder.path(), &["export", "c.gpkg", "-o", "x.geojson", "--layer", "roofs"])
         .ends(2)
         .says("buildings");
+}
+
+#[test]
+fn intersections_can_be_exported_alone() {
+    let folder = tempdir().unwrap();
+    small_city(folder.path(), "c.gpkg");
+    let args = ["export", "c.gpkg", "-o", "i.geojson", "--layer", "intersections"];
+    exurb(folder.path(), &args).ends(0);
+    let text = fs::read_to_string(folder.path().join("i.geojson")).unwrap();
+    assert!(text.contains("\"degree\":3") && !text.contains("\"street\""));
+    let args = ["export", "c.gpkg", "-o", "i.svg", "--layer", "intersections"];
+    exurb(folder.path(), &args).ends(2).says(".gpkg or .geojson");
+}
+
+#[test]
+fn journals_of_a_replaced_geopackage_go_with_it() {
+    let folder = tempdir().unwrap();
+    fs::write(folder.path().join("c.gpkg"), b"old").unwrap();
+    fs::write(folder.path().join("c.gpkg-wal"), b"pages of the old file").unwrap();
+    exurb(folder.path(), &["import", "missing.osm", "-o", "c.gpkg"]).ends(2);
+    assert_eq!(listing(folder.path()), ["c.gpkg", "c.gpkg-wal"]);
+    small_city(folder.path(), "c.gpkg");
+    assert_eq!(listing(folder.path()), ["c.gpkg"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_device_is_written_to_and_not_replaced() {
+    let folder = tempdir().unwrap();
+    for format in ["gpkg", "geojson", "png"] {
+        let args = ["export", "builtin:prague", "-o", "/dev/null", "--to", format];
+        exurb(folder.path(), &args).ends(0);
+    }
+    assert!(!fs::metadata("/dev/null").unwrap().is_file());
+}
+
+#[test]
+fn a_dry_run_reads_and_leaves_nothing() {
+    let folder = tempdir().unwrap();
+    let run = |args: &str| exurb(folder.path(), &args.split(' ').collect::<Vec<_>>());
+    run("import builtin:prague -o c.gpkg --dry-run").ends(0);
+    run("export builtin:prague -o c.glb --dry-run").ends(0);
+    run("render builtin:prague -o c.png --dry-run").ends(0);
+    let recipe = run("demo --style prague --dry-run").ends(0).out;
+    assert!(recipe.contains("builtin:prague"), "{recipe}");
+    run("import missing.osm -o c.gpkg --dry-run").ends(2);
+    run("demo --example missing.osm -o folder").ends(2);
+    assert_eq!(listing(folder.path()), [""; 0]);
+}
+
+#[test]
+fn options_of_the_other_kind_of_picture_are_refused() {
+    let folder = tempdir().unwrap();
+    for (options, words) in [
+        ("--view 3d --color-by origin", "for maps"),
+        ("--view 3d --style dark", "for maps"),
+        ("--elevation 40", "view 3d"),
+        ("--view 3d --elevation 100", "expected 2 to 89"),
+        ("--view 3d --zoom -1", "expected 0.1 to 100"),
+        ("--view 3d --width 9000", "8192"),
+        ("--to gpkg", "png, svg"),
+    ] {
+        let args = format!("render builtin:prague -o c.png {options}");
+        exurb(folder.path(), &args.split(' ').collect::<Vec<_>>()).ends(2).says(words);
+    }
+    assert_eq!(listing(folder.path()), [""; 0]);
 }
 
 #[test]

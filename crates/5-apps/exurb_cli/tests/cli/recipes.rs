@@ -10,12 +10,12 @@ use crate::{exurb, listing};
 fn the_printed_recipe_makes_the_same_file() {
     let folder = tempdir().unwrap();
     let args =
-        "streets grow -e builtin:helsinki --size 600x500 --seed 3 --continuation 0.5 -o c.gpkg";
+        "streets grow -e builtin:helsinki --size 600x500 --seed 3 --continuation 0.75 -o c.gpkg";
     let args: Vec<&str> = args.split(' ').collect();
     exurb(folder.path(), &args).ends(0);
     let dry: Vec<&str> = args.iter().copied().chain(["--dry-run"]).collect();
     let recipe = exurb(folder.path(), &dry).ends(0).out;
-    assert!(recipe.contains("continuation = 0.5"), "{recipe}");
+    assert!(recipe.contains("continuation = 0.75"), "{recipe}");
     fs::write(folder.path().join("r.toml"), recipe).unwrap();
     exurb(folder.path(), &["run", "r.toml", "-o", "again"]).ends(0);
     let read = |name: &str| fs::read(folder.path().join(name)).unwrap();

@@ -101,6 +101,33 @@ fn unreadable_input_ends_with_2_and_names_the_file() {
 }
 
 #[test]
+fn an_example_teaches_every_method() {
+    let folder = tempdir().unwrap();
+    let lesson = exurb(folder.path(), &["learn", "builtin:prague"]).ends(0).json();
+    let methods = &lesson["methods"];
+    assert!(methods["streets grow"][0]["local"]["patches"].as_u64() > Some(5), "{methods}");
+    assert!(methods["blocks parcels"]["frontage_m"].as_f64() > Some(5.0), "{methods}");
+    assert!(methods["blocks footprints"]["buildings"].as_u64() > Some(50), "{methods}");
+    assert!(methods["buildings extrude"]["known_heights"].is_u64(), "{methods}");
+    assert!(methods["streets furnish"]["trees"]["spacing_m"].is_number(), "{methods}");
+    exurb(folder.path(), &["learn", "builtin:prague", "-o", "l.json"]).ends(0);
+    let kept = fs::read_to_string(folder.path().join("l.json")).unwrap();
+    assert_eq!(serde_json::from_str::<serde_json::Value>(&kept).unwrap(), lesson);
+}
+
+#[test]
+fn figures_of_nothing_are_nothing() {
+    let folder = tempdir().unwrap();
+    let house = r#"{"type":"Feature","properties":{"building":"yes"},"geometry":{"type":"Polygon",
+        "coordinates":[[[14.4,50.1],[14.401,50.1],[14.401,50.101],[14.4,50.1]]]}}"#;
+    fs::write(folder.path().join("house.geojson"), house).unwrap();
+    let text = exurb(folder.path(), &["info", "house.geojson"]).ends(0).out;
+    assert!(text.contains("0 of 0.0 km"), "{text}");
+    let report = exurb(folder.path(), &["import", "house.geojson", "-o", "c.gpkg"]).ends(0).out;
+    assert!(!report.contains("likeness gates"), "no example to be like: {report}");
+}
+
+#[test]
 fn completions_name_the_methods() {
     let folder = tempdir().unwrap();
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {

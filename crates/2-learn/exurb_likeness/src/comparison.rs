@@ -1,0 +1,222 @@
+//! Comparing a candidate with its example: which windows, against which floor, with what result.
+
+use exurb_city::{City, Origin, Part};
+use exurb_geom::{Bounds, Vec2};
+use exurb_measure::Network;
+
+use crate::copying::Original;
+use crate::measures::STREETS;
+use crate::panel::{self, Panel};
+use crate::patches::{CANDIDATE, HELD_OUT, Patches};
+use crate::{HeldOut, Measured, Scorecard, Side, Yardstick, windows};
+
+/// Radii at which copies are looked for, in metres.
+pub const COPY_RADII_M: [f64; 2] = [150.0, 300.0];
+/// A window with fewer junctions tells little.
+const FEW_JUNCTIONS: usize = 30;
+/// Two parts of one city overlap when they share more than this of the smaller, by area.
+const OVERLAP: f64 = 0.05;
+
+/// Other cities, whose mean distance is the floor.
+#[derive(Clone, Copy, Debug)]
+pub enum Floor<'a> {
+    /// The cities of the panel.
+    Panel,
+    /// These cities, each in a window of the size compared.
+    Cities(&'a [City]),
+}
+
+/// A window of a city.
+#[derive(Clone, Copy, Debug)]
+pub struct Place<'a> {
+    /// The city.
+    pub city: &'a City,
+    /// The window.
+    pub window: Bounds,
+}
+
+impl Place<'_> {
+    /// The part of the window of at most that size around its middle.
+    fn cut(self, size: Vec2) -> Self {
+        Self { window: windows::centred(self.window, size), ..self }
+    }
+}
+
+/// An example and what it is known by: everything a comparison needs but the candidate.
+#[derive(Debug)]
+pub struct Reference {
+    /// Name of the example.
+    pub name: String,
+    /// Size of all windows in metres.
+    pub size: Vec2,
+    /// Ceilings and floors.
+    pub yardstick: Yardstick,
+    /// What was measured of the example's own other part.
+    pub part: Subject,
+    /// Names of the cities of the floor.
+    pub floor: Vec<String>,
+    /// What a reader should know, a sentence each.
+    pub notes: Vec<String>,
+    original: Original,
+    seed: u64,
+}
+
+/// One window, measured.
+#[derive(Debug)]
+pub struct Subject {
+    /// The streets.
+    pub network: Network,
+    /// What was measured of them.
+    pub measured: Measured,
+    /// Patches of their picture.
+    pub patches: Option<Patches>,
+}
+
+impl Subject {
+    /// Measures a window. `key` is [`HELD_OUT`] for the part compared with, else [`CANDIDATE`].
+    pub fn of(place: Place, panel: &Panel, seed: u64, key: u64) -> Self {
+        let network = Network::of(&place.city.streets, place.window);
+        let measured = Measured::of_network(&network);
+        let look = |image| Patches::of(image, &panel.dictionary, seed, key);
+        let patches = measured.image.as_ref().map(look);
+        Self { network, measured, patches }
+    }
+
+    /// As one side of a comparison.
+    pub fn side(&self) -> Side<'_> {
+        Side { measured: &self.measured, patches: self.patches.as_ref() }
+    }
+}
+
+/// How like its example a candidate is.
+#[derive(Debug)]
+pub struct Likeness {
+    /// Scores.
+    pub scorecard: Scorecard,
+    /// Share of junctions that stand in the example with what lies within 150 m and 300 m.
+    pub copy_rates: [Option<f64>; 2],
+    /// Share of the candidate's street length that was copied from this example.
+    pub example_share: Option<f64>,
+    /// What was measured of the candidate.
+    pub candidate: Subject,
+    /// What a reader should know, a sentence each.
+    pub notes: Vec<String>,
+}
+
+/// The largest window that all of these cities hold, halved from west to east where `split`.
+pub fn common_size<'a>(cities: impl IntoIterator<Item = &'a City>) -> Vec2 {
+    cities.into_iter().map(|city| city.target.bounds().size()).fold(Vec2::INFINITY, Vec2::min)
+}
+
+/// The parts of an example without a held-out one: west and east half of its densest square.
+pub fn split(example: &City) -> [Place<'_>; 2] {
+    windows::halves(example, [Part::West, Part::East]).map(|window| Place { city: example, window })
+}
+
+impl Reference {
+    /// Prepares an example. `parts` are its own parts, whose mean distance from `held_out` is the
+    /// ceiling; the first one is shown beside the candidate. All windows are cut to `size` around
+    /// their middles.
+    pub fn new(
+        example: &City,
+        parts: &[Place],
+        held_out: Place,
+        floor: Floor,
+        panel: &Panel,
+        size: Vec2,
+        seed: u64,
+    ) -> Self {
+        let own: Vec<Subject> =
+            parts.iter().map(|p| Subject::of(p.cut(size), panel, seed, CANDIDATE)).collect();
+        let cities = match floor {
+            Floor::Cities(cities) => cities,
+            Floor::Panel => &[],
+        };
+        let window = |city| Place { city, window: windows::of_size(city, size) };
+        let others: Vec<Subject> =
+            cities.iter().map(|c| Subject::of(window(c), panel, seed, CANDIDATE)).collect();
+        let of_panel = match floor {
+            Floor::Panel => panel.others(&[example, held_out.city]),
+            Floor::Cities(_) => Vec::new(),
+        };
+        let floor: Vec<Side> =
+            others.iter().map(Subject::side).chain(of_panel.iter().map(|c| c.side())).collect();
+        let names = cities.iter().map(|c| c.metadata.name.to_string());
+        let held_out = held_out.cut(size);
+        let mut notes = overlapping(parts, held_out);
+        let Subject { network, measured, patches } = Subject::of(held_out, panel, seed, HELD_OUT);
+        notes.extend(thin(&network, "the held-out part"));
+        let real = own.iter().map(|s| &s.measured).chain(floor.iter().map(|s| s.measured));
+        let held_out = HeldOut::new(measured, patches, real, seed);
+        let sides: Vec<Side> = own.iter().map(Subject::side).collect();
+        let whole = Network::of(&example.streets, example.target.bounds());
+        let floor_names = names.chain(of_panel.iter().map(|c| c.name.clone())).collect();
+        let yardstick = Yardstick::new(held_out, &STREETS, &sides, &floor);
+        Self {
+            name: example.metadata.name.to_string(),
+            size,
+            yardstick,
+            part: own.into_iter().next().expect("an example has a part"),
+            floor: floor_names,
+            notes,
+            original: Original::new(&whole),
+            seed,
+        }
+    }
+
+    /// Compares a city in a window of the reference's size.
+    pub fn compare(&self, candidate: &City, panel: &Panel) -> Likeness {
+        let window = windows::of_size(candidate, self.size);
+        let place = Place { city: candidate, window }.cut(self.size);
+        self.compare_subject(candidate, Subject::of(place, panel, self.seed, CANDIDATE))
+    }
+
+    fn compare_subject(&self, city: &City, candidate: Subject) -> Likeness {
+        let scorecard = self.yardstick.score(candidate.side());
+        let copy_rates =
+            COPY_RADII_M.map(|radius_m| self.original.copy_rate(&candidate.network, radius_m));
+        let mut notes = thin(&candidate.network, "the candidate");
+        if candidate.measured.fingerprint.is_empty() {
+            notes.push("the candidate has no blocks: measures of blocks score -1".to_owned());
+        }
+        if copy_rates.iter().flatten().any(|rate| *rate > 0.99) {
+            notes.push("the candidate is a copy of the example: scores near 1 mean nothing".into());
+        }
+        let example_share = example_share(city, &self.name);
+        Likeness { scorecard, copy_rates, example_share, candidate, notes }
+    }
+}
+
+/// Share of the street length that was copied from the example of that name; `None` of no streets.
+fn example_share(city: &City, name: &str) -> Option<f64> {
+    let (mut copied, mut all) = (0.0, 0.0);
+    for (_, edge) in city.streets.edges() {
+        let provenance = &edge.data.provenance;
+        let own = provenance.origin == Origin::Example
+            && provenance.source.as_deref().is_some_and(|source| source == name);
+        all += edge.length_m();
+        copied += if own { edge.length_m() } else { 0.0 };
+    }
+    (all > 0.0).then(|| copied / all)
+}
+
+fn thin(network: &Network, whose: &str) -> Vec<String> {
+    match network.junctions().count() {
+        few if few < FEW_JUNCTIONS => vec![format!(
+            "{whose} has {few} junctions, fewer than {FEW_JUNCTIONS}: scores are unreliable; compare a larger area"
+        )],
+        _ => Vec::new(),
+    }
+}
+
+/// A note for every part that shares ground with the held-out one.
+fn overlapping(parts: &[Place], held_out: Place) -> Vec<String> {
+    let place = |p: &Place| {
+        let (sw, ne) = (p.city.frame.unproject(p.window.min), p.city.frame.unproject(p.window.max));
+        [sw.lon, sw.lat, ne.lon, ne.lat]
+    };
+    let other = place(&held_out);
+    let shared = |p: &&Place| panel::shared_area(place(p), other) > OVERLAP;
+    let note = "the example's part and the held-out part overlap: the held-out part was not unseen";
+    parts.iter().filter(shared).map(|_| note.to_owned()).take(1).collect()
+}

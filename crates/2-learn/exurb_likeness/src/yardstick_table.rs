@@ -1,0 +1,235 @@
+//! The table that shows whether the scale behaves: what unseen parts of a city, other cities, spoilt
+//! copies and streets by rule score against each other.
+//!
+//! Every city's densest 5 km square is cut in two; the west part is the example, the east part is
+//! held out, the other cities' west parts are the floor.
+
+use std::collections::BTreeMap;
+
+use exurb_city::{City, Part, StreetGraph};
+use exurb_geom::{Bounds, Vec2};
+use exurb_measure::Network;
+use exurb_operation::{Rng, rng};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::measures::{Family, STREETS};
+use crate::patches::{CANDIDATE, Dictionary, HELD_OUT, Patches};
+use crate::scorecard::{Marks, mean};
+use crate::{HeldOut, Measured, Scorecard, Side, Yardstick, nets, windows};
+
+impl Table {
+    /// Both tables as text.
+    pub fn to_text(&self) -> String {
+        let figure = |v: Option<f64>| v.map_or("-".to_owned(), |v| format!("{v:.2}"));
+        let mut out = format!("{:<24} {:>8} {:>8} {:>8}\n", "measure", "ceiling", "floor", "grid");
+        for d in &self.distances {
+            let [ceiling, floor, grid] = [d.ceiling, d.floor, d.grid].map(figure);
+            out += &format!("{:<24} {ceiling:>8} {floor:>8} {grid:>8}\n", d.measure);
+        }
+        let families: Vec<&str> = Family::ALL.iter().map(|f| f.name()).collect();
+        out += &format!(
+            "\n{:<32} {:>13} {:>6}  {}\n",
+            "candidate",
+            "TOTAL (sd)",
+            "CORE",
+            families.join(" ")
+        );
+        for row in &self.rows {
+            let family = |f: &Family| {
+                let score = figure(row.families.get(f.name()).copied());
+                format!("{score:>width$}", width = f.name().len())
+            };
+            let families: Vec<String> = Family::ALL.iter().map(family).collect();
+            let total = format!("{:.2} ({:.2})", row.total[0], row.total[1]);
+            let core = figure(Some(row.core));
+            out +=
+                &format!("{:<32} {total:>13} {core:>6}  {}\n", row.candidate, families.join(" "));
+        }
+        out += "\ninformative measures:";
+        for (name, count) in &self.informative {
+            out += &format!(" {name} {count}");
+        }
+        out + "\n"
+    }
+}
+
+/// One row: what a kind of candidate scores, over all cities.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// What the candidates are.
+    pub candidate: &'static str,
+    /// Mean and standard deviation of TOTAL.
+    pub total: [f64; 2],
+    /// Mean of CORE.
+    pub core: f64,
+    /// Mean by family.
+    pub families: BTreeMap<&'static str, f64>,
+}
+
+/// Mean distances of one measure over all cities.
+#[derive(Clone, Debug, Serialize)]
+pub struct Distances {
+    /// The measure.
+    pub measure: &'static str,
+    /// Of the city's own other part.
+    pub ceiling: Option<f64>,
+    /// Of other cities.
+    pub floor: Option<f64>,
+    /// Of a square grid of equal street density.
+    pub grid: Option<f64>,
+}
+
+/// The table.
+#[derive(Clone, Debug, Serialize)]
+pub struct Table {
+    /// Kinds of candidates, in the order they should come out.
+    pub rows: Vec<Row>,
+    /// Distances by measure.
+    pub distances: Vec<Distances>,
+    /// Number of informative measures by city.
+    pub informative: Vec<(String, usize)>,
+}
+
+/// A part of a city, measured, and its picture looked at.
+struct Set {
+    measured: Measured,
+    patches: Option<Patches>,
+}
+
+impl Set {
+    fn side(&self) -> Side<'_> {
+        Side { measured: &self.measured, patches: self.patches.as_ref() }
+    }
+}
+
+/// Candidates of one kind that are made and scored for each city: chance moves a single one by 0.05.
+const REPETITIONS: usize = 3;
+
+type Maker = fn(&Network, &mut Rng) -> StreetGraph;
+
+/// Kinds of candidates made from the example part.
+const MADE: [(&str, Maker); 7] = [
+    ("A with 10 m node noise", |n, rng| nets::with_noise(n, 10.0, rng)),
+    ("A with 10 % of segments removed", |n, rng| nets::with_gaps(n, 0.1, rng)),
+    ("A with 25 m node noise", |n, rng| nets::with_noise(n, 25.0, rng)),
+    ("A with 30 % of segments removed", |n, rng| nets::with_gaps(n, 0.3, rng)),
+    ("Poisson-Voronoi streets", |n, rng| nets::voronoi(n.window, density(n), rng)),
+    ("jittered grid", |n, rng| nets::jittered_grid(n.window, density(n), rng)),
+    ("regular grid", |n, rng| nets::grid(n.window, density(n), 0.0, rng)),
+];
+
+fn density(network: &Network) -> f64 {
+    let size = network.window.size();
+    network.length_m() / (size.x * size.y)
+}
+
+/// Makes the table for cities, at least two; the discriminator looks through the filters of
+/// `dictionary`. On rayon's current pool; the same on any number of threads.
+pub fn table(cities: &[&City], dictionary: &Dictionary, seed: u64) -> Table {
+    let windows = equal_halves(cities);
+    let looked_at = |measured: Measured, key: u64| {
+        let patches = measured.image.as_ref().map(|i| Patches::of(i, dictionary, seed, key));
+        Set { measured, patches }
+    };
+    let set = |i: usize, half: usize, key: u64| {
+        looked_at(Measured::of(&cities[i].streets, windows[i][half]), key)
+    };
+    let sets: Vec<[Set; 2]> = (0..cities.len())
+        .into_par_iter()
+        .map(|i| [set(i, 0, CANDIDATE), set(i, 1, HELD_OUT)])
+        .collect();
+    let columns: Vec<Column> = (0..cities.len())
+        .into_par_iter()
+        .map(|i| {
+            let part = Network::unmerged(&cities[i].streets, windows[i][0]);
+            column(&sets, &part, i, seed, &looked_at)
+        })
+        .collect();
+    let names = cities.iter().map(|c| c.metadata.name.to_string());
+    summary(&columns, names.collect())
+}
+
+/// West and east half of every city's densest square, all cut to one size.
+fn equal_halves(cities: &[&City]) -> Vec<[Bounds; 2]> {
+    let halves: Vec<[Bounds; 2]> =
+        cities.iter().map(|city| windows::halves(city, [Part::West, Part::East])).collect();
+    let size = halves.iter().flatten().map(|h| h.size()).fold(Vec2::INFINITY, Vec2::min);
+    halves.into_iter().map(|pair| pair.map(|half| windows::centred(half, size))).collect()
+}
+
+/// What one held-out part gives.
+struct Column {
+    marks: Vec<Marks>,
+    itself: Scorecard,
+    /// By kind, then by repetition.
+    made: Vec<Vec<Scorecard>>,
+    others: Vec<Scorecard>,
+    informative: usize,
+}
+
+fn column(
+    sets: &[[Set; 2]],
+    part: &Network,
+    own: usize,
+    seed: u64,
+    looked_at: &(impl Fn(Measured, u64) -> Set + Sync),
+) -> Column {
+    let [a, b] = &sets[own];
+    let others: Vec<Side> =
+        (0..sets.len()).filter(|i| *i != own).map(|i| sets[i][0].side()).collect();
+    let real = others.iter().map(|s| s.measured).chain([&a.measured]);
+    let held_out = HeldOut::new(b.measured.clone(), b.patches.clone(), real, seed);
+    let yardstick = Yardstick::new(held_out, &STREETS, &[a.side()], &others);
+    let made = |(name, make): &(&str, Maker), repetition: usize| {
+        let key = (own * REPETITIONS + repetition) as u64;
+        let streets = make(part, &mut rng::stream(seed, name, key));
+        yardstick.score(looked_at(Measured::of(&streets, part.window), CANDIDATE).side())
+    };
+    let of_kind = |kind| (0..REPETITIONS).into_par_iter().map(|r| made(kind, r)).collect();
+    Column {
+        itself: yardstick.score(a.side()),
+        made: MADE.par_iter().map(of_kind).collect(),
+        others: (0..others.len()).map(|i| yardstick.score_other(i)).collect(),
+        informative: yardstick.informative(),
+        marks: yardstick.marks().to_vec(),
+    }
+}
+
+fn summary(columns: &[Column], names: Vec<String>) -> Table {
+    let mut rows = vec![row("A itself", columns.iter().map(|c| &c.itself).collect())];
+    for (i, (name, _)) in MADE.iter().enumerate() {
+        if i == 4 {
+            let others = columns.iter().flat_map(|c| &c.others).collect();
+            rows.push(row("another real city", others));
+        }
+        rows.push(row(name, columns.iter().flat_map(|c| &c.made[i]).collect()));
+    }
+    let grids = || columns.iter().flat_map(|c| &c.made[MADE.len() - 1]);
+    let distances = STREETS.iter().enumerate().map(|(m, measure)| Distances {
+        measure: measure.name,
+        ceiling: mean(columns.iter().filter_map(|c| c.marks[m].ceiling())),
+        floor: mean(columns.iter().filter_map(|c| c.marks[m].floor())),
+        grid: mean(grids().filter_map(|card| card.measures[m].distance)),
+    });
+    Table {
+        rows,
+        distances: distances.collect(),
+        informative: names.into_iter().zip(columns.iter().map(|c| c.informative)).collect(),
+    }
+}
+
+fn row(candidate: &'static str, cards: Vec<&Scorecard>) -> Row {
+    let totals: Vec<f64> = cards.iter().filter_map(|c| c.total).collect();
+    let total = mean(totals.iter().copied()).unwrap_or_default();
+    let variance = mean(totals.iter().map(|t| (t - total) * (t - total))).unwrap_or_default();
+    let family = |f: Family| {
+        Some((f.name(), mean(cards.iter().filter_map(|c| c.families.get(&f).copied()))?))
+    };
+    Row {
+        candidate,
+        total: [total, variance.sqrt()],
+        core: mean(cards.iter().filter_map(|c| c.core)).unwrap_or_default(),
+        families: Family::ALL.into_iter().filter_map(family).collect(),
+    }
+}

@@ -1,0 +1,174 @@
+//! `exurb compare CITY --with EXAMPLE`
+
+use std::path::{Path, PathBuf};
+
+use clap::{ArgMatches, Args, Command, FromArgMatches};
+use exurb_city::City;
+use exurb_likeness::comparison::{common_size, split};
+use exurb_likeness::{Document, Floor, Panel, Place, Reference, windows, yardstick_table};
+use exurb_measure::Info;
+use exurb_operation::Run;
+use exurb_recipe::Source;
+use serde_json::{Value, json};
+
+use crate::options::RunOptions;
+use crate::problem::Problem;
+use crate::{job, report};
+
+/// Random draws are the same in every run.
+const SEED: u64 = 1;
+
+#[derive(Args)]
+struct Options {
+    /// City to judge, any readable format
+    #[arg(required_unless_present = "yardstick", value_name = "CITY")]
+    city: Option<PathBuf>,
+    /// Example it was made from; repeatable, each is compared on its own
+    #[arg(long, required_unless_present = "yardstick", value_name = "EXAMPLE")]
+    with: Vec<PathBuf>,
+    /// Part of the example that the city was not made from, one for each example [default: the east
+    /// half of the example's densest square, its west half standing for the example]
+    #[arg(long, value_name = "CITY")]
+    held_out: Vec<PathBuf>,
+    /// Other cities, whose mean distance scores 0 [default: a built-in panel of nine cities]
+    #[arg(long, value_name = "CITY", num_args = 1..)]
+    floor: Vec<PathBuf>,
+    /// Check the scale itself instead: score unseen parts, other cities, spoilt copies and streets by
+    /// rule against each of these cities
+    #[arg(long, value_name = "CITY", num_args = 1.., conflicts_with_all = ["city", "with", "held_out", "floor"])]
+    yardstick: Vec<PathBuf>,
+    #[command(flatten)]
+    run: RunOptions,
+}
+
+/// The command.
+pub fn command() -> Command {
+    let about = "How like its example a city is: scores between another city (0) and the example's \
+                 own unseen part (1)";
+    Options::augment_args(Command::new("compare")).about(about)
+}
+
+/// Runs it.
+pub fn run(matches: &ArgMatches) -> Result<(), Problem> {
+    let options = Options::from_arg_matches(matches).map_err(|e| Problem::usage(e.to_string()))?;
+    let text = job::work(&options.run, SEED, |run| {
+        let panel = Panel::builtin().map_err(|e| Problem::failed(e.to_string()))?;
+        match &options.city {
+            Some(city) => compare(city, &options, &panel, run),
+            None => yardstick(&options, &panel, run),
+        }
+    })?;
+    report::result(&text)
+}
+
+fn compare(city: &Path, options: &Options, panel: &Panel, run: &Run) -> Result<String, Problem> {
+    let candidate = read(city, run)?;
+    let examples = read_all(&options.with, run)?;
+    let held_out = read_all(&options.held_out, run)?;
+    let floor = read_all(&options.floor, run)?;
+    if !held_out.is_empty() && held_out.len() != examples.len() {
+        return Err(Problem::usage(format!(
+            "there are {} examples and {} held-out parts; give one --held-out for each --with, or none",
+            examples.len(),
+            held_out.len()
+        )));
+    }
+    run.phase("comparing");
+    let mut documents = Vec::new();
+    for (number, example) in examples.iter().enumerate() {
+        let reference = reference(&candidate, example, held_out.get(number), &floor, panel);
+        run.check()?;
+        let likeness = reference.compare(&candidate, panel);
+        documents.push(Document::of(&reference, &likeness));
+        run.check()?;
+    }
+    let info = Info::of(&candidate, examples.first());
+    if options.run.json {
+        return Ok(format!("{:#}", to_json(&candidate, &documents, &info)));
+    }
+    Ok(to_text(&candidate, &documents, &info))
+}
+
+/// The example, its parts and the floor, all windows as large as the smallest of them allows.
+fn reference(
+    candidate: &City,
+    example: &City,
+    held_out: Option<&City>,
+    floor: &[City],
+    panel: &Panel,
+) -> Reference {
+    let (parts, unseen) = match held_out {
+        None => {
+            let [a, b] = split(example);
+            (a, b)
+        }
+        Some(city) => {
+            let size = city.target.bounds().size();
+            let window = windows::of_size(example, size);
+            let unseen = Place { city, window: city.target.bounds() };
+            (Place { city: example, window }, unseen)
+        }
+    };
+    let windows = parts.window.size().min(unseen.window.size());
+    let size = windows.min(common_size(floor.iter().chain([candidate])));
+    let floor = if floor.is_empty() { Floor::Panel } else { Floor::Cities(floor) };
+    Reference::new(example, &[parts], unseen, floor, panel, size, SEED)
+}
+
+fn read(file: &Path, run: &Run) -> Result<City, Problem> {
+    let source = Source::new(file);
+    let mut city = exurb_recipe::read_source(&source, Path::new(""), run)?;
+    if city.metadata.name.is_empty() {
+        city.metadata.name = source.name().into();
+    }
+    if city.streets.edges().next().is_none() {
+        let message = "it has no streets, so there is nothing to compare";
+        return Err(Problem::usage(format!("{}: {message}", file.display())));
+    }
+    Ok(city)
+}
+
+fn read_all(files: &[PathBuf], run: &Run) -> Result<Vec<City>, Problem> {
+    files.iter().map(|file| read(file, run)).collect()
+}
+
+/// The contract's keys are those of the first example; `examples` holds them all.
+fn to_json(candidate: &City, documents: &[Document], info: &Info) -> Value {
+    let mut value = json!(documents.first());
+    if let Some(object) = value.as_object_mut() {
+        object.insert("candidate".into(), json!(&*candidate.metadata.name));
+        object.insert("laws".into(), json!(info.laws));
+        object.insert("likeness_gates".into(), json!(info.likeness_gates));
+        object.insert("valid".into(), json!(info.valid));
+        object.insert("examples".into(), json!(documents));
+    }
+    value
+}
+
+fn to_text(candidate: &City, documents: &[Document], info: &Info) -> String {
+    let mut out = String::new();
+    for document in documents {
+        out += &format!("{} compared with {}\n", candidate.metadata.name, document.example);
+        out += &document.to_text();
+        out.push('\n');
+    }
+    let broken = info.laws.iter().filter(|(_, law)| !law.pass).map(|(name, _)| name.as_str());
+    let broken: Vec<&str> = broken.collect();
+    let gates = info.likeness_gates.iter().filter(|(_, gate)| gate.pass == Some(false));
+    let missed: Vec<&str> = gates.map(|(name, _)| name.as_str()).collect();
+    let list = |names: Vec<&str>| if names.is_empty() { "none".into() } else { names.join(", ") };
+    out + &format!("laws broken     {}\ngates missed    {}\n", list(broken), list(missed))
+}
+
+fn yardstick(options: &Options, panel: &Panel, run: &Run) -> Result<String, Problem> {
+    let cities = read_all(&options.yardstick, run)?;
+    if cities.len() < 2 {
+        let message = "a yardstick needs at least two cities: each is the floor of the others";
+        return Err(Problem::usage(message));
+    }
+    run.phase("measuring");
+    let cities: Vec<&City> = cities.iter().collect();
+    let table = yardstick_table::table(&cities, &panel.dictionary, SEED);
+    run.check()?;
+    Ok(if options.run.json { format!("{:#}", json!(table)) } else { table.to_text() })
+}

@@ -1,0 +1,72 @@
+//! `likeness`: the protocol over every shared map, and its table in docs/likeness.md; `panel`: the
+//! built-in panel of `exurb compare`, measured anew.
+
+use std::path::PathBuf;
+
+use crate::shell::{self, Outcome, cargo, output_of, root, target};
+
+/// The table stands between these lines.
+const BEGIN: &str = "<!-- protocol: begin -->\n";
+const END: &str = "<!-- protocol: end -->\n";
+
+/// Runs the protocol with these options over the shared maps, or over those whose names follow
+/// `--maps`. Without options the table goes into docs/likeness.md.
+pub fn run(options: &[&str]) -> Outcome {
+    let (options, chosen) = match options.iter().position(|o| *o == "--maps") {
+        Some(at) => (&options[..at], &options[at + 1..]),
+        None => (options, &[][..]),
+    };
+    let maps: Vec<PathBuf> = maps()?.into_iter().filter(|map| is_chosen(map, chosen)).collect();
+    if maps.is_empty() {
+        println!("skipped: no shared data");
+        return Ok(());
+    }
+    let build = "build --release --locked --package exurb_benches --bin exurb_protocol";
+    shell::run(&mut cargo(build))?;
+    let mut protocol = std::process::Command::new(target().join("release/exurb_protocol"));
+    let table = output_of(protocol.args(options).args(maps))?;
+    println!("{table}");
+    if options.is_empty() && chosen.is_empty() { write(&table) } else { Ok(()) }
+}
+
+/// Measures the nine cities of the panel and writes what `exurb compare` has built in.
+pub fn panel() -> Outcome {
+    let cities = std::fs::read_to_string(root().join("crates/2-learn/exurb_likeness/src/panel.rs"))
+        .map_err(|e| e.to_string())?;
+    let list =
+        cities.split_once("CITIES: [&str; 9] = [").and_then(|(_, rest)| rest.split_once(']'));
+    let names: Vec<&str> =
+        list.map_or("", |(list, _)| list).split('"').skip(1).step_by(2).collect();
+    let folder = root().join("../shared/data/osm");
+    let maps: Vec<PathBuf> = names.iter().map(|n| folder.join(format!("{n}.osm.pbf"))).collect();
+    if let Some(missing) = maps.iter().find(|map| !map.exists()) {
+        return Err(format!("the panel needs {}", missing.display()));
+    }
+    let file = root().join("crates/2-learn/exurb_likeness/data/panel.json.gz");
+    let mut example = cargo("run --release --locked --package exurb_likeness --example panel --");
+    shell::run(example.arg(&file).args(maps))
+}
+
+fn maps() -> Outcome<Vec<PathBuf>> {
+    let Ok(folder) = std::fs::read_dir(root().join("../shared/data/osm")) else {
+        return Ok(Vec::new());
+    };
+    let mut maps: Vec<PathBuf> = folder.flatten().map(|entry| entry.path()).collect();
+    maps.sort();
+    Ok(maps)
+}
+
+fn is_chosen(map: &std::path::Path, names: &[&str]) -> bool {
+    let file = map.file_name().unwrap_or_default().to_string_lossy();
+    names.is_empty() || names.iter().any(|name| file.split('.').next() == Some(*name))
+}
+
+fn write(table: &str) -> Outcome {
+    let path = root().join("docs/likeness.md");
+    let page = std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
+    let parts =
+        page.split_once(BEGIN).and_then(|(head, rest)| Some((head, rest.split_once(END)?.1)));
+    let (head, tail) = parts.ok_or("docs/likeness.md lacks the marks of the table")?;
+    let page = format!("{head}{BEGIN}{}\n{END}{tail}", table.trim_end());
+    std::fs::write(&path, page).map_err(|e| e.to_string())
+}
