@@ -4,6 +4,7 @@
 
 pub use exurb_gis::fuzz::{geojson, geopackage, target};
 pub use exurb_osm::fuzz::{overpass, pbf, xml};
+pub use exurb_terrain::fuzz::{ascii_grid, geotiff, height_png, hgt};
 
 use exurb_recipe::{Recipe, Registry};
 
@@ -11,9 +12,13 @@ use exurb_recipe::{Recipe, Registry};
 pub type Body = fn(&[u8]);
 
 /// Every body by the name of its target.
-pub const BODIES: [(&str, Body); 7] = [
+pub const BODIES: [(&str, Body); 11] = [
+    ("ascii_grid", ascii_grid),
     ("geojson", geojson),
     ("geopackage", geopackage),
+    ("geotiff", geotiff),
+    ("height_png", height_png),
+    ("hgt", hgt),
     ("overpass", overpass),
     ("pbf", pbf),
     ("recipe", recipe),

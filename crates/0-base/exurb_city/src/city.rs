@@ -3,7 +3,7 @@ use std::sync::Arc;
 
 use exurb_geom::{Frame, Polygon};
 
-use crate::{Area, Block, Building, Feature, Parcel, StreetGraph, Way};
+use crate::{Area, Block, Building, Feature, Parcel, StreetGraph, Terrain, Way};
 
 /// A city: one document, imported or synthesised.
 #[derive(Clone, Debug)]
@@ -29,6 +29,8 @@ pub struct City {
     pub water: Arc<Vec<Area>>,
     /// Land use.
     pub land_use: Arc<Vec<Area>>,
+    /// The ground; flat at height 0 without one.
+    pub terrain: Option<Arc<Terrain>>,
     /// What travels with the city.
     pub metadata: Metadata,
 }
@@ -73,6 +75,7 @@ impl City {
             features: Arc::default(),
             water: Arc::default(),
             land_use: Arc::default(),
+            terrain: None,
             metadata: Metadata::default(),
         }
     }

@@ -8,7 +8,10 @@ use exurb_graph::NodeId;
 use crate::hierarchy::{Hierarchy, assign_levels};
 use crate::street_graph::{self, Derive};
 use crate::{Area, Building, City, Feature, Metadata, Origin, Parcel, Provenance, Role};
-use crate::{StreetGraph, StreetMap, completeness, cut, densest_square, facades, placing};
+use crate::{StreetGraph, StreetMap, Terrain, completeness, cut, densest_square, facades, placing};
+
+/// Terrain is kept this far around the target, where streets run on.
+const AROUND_M: f64 = 200.0;
 
 /// What a reader delivers, in the local frame.
 #[derive(Clone, Debug)]
@@ -35,6 +38,8 @@ pub struct Draft {
     pub water: Vec<Area>,
     /// Land use.
     pub land_use: Vec<Area>,
+    /// The ground.
+    pub terrain: Option<Arc<Terrain>>,
     /// What travels with the city.
     pub metadata: Metadata,
 }
@@ -94,6 +99,7 @@ impl Draft {
             features: Vec::new(),
             water: Vec::new(),
             land_use: Vec::new(),
+            terrain: None,
             metadata: Metadata::default(),
         }
     }
@@ -146,6 +152,11 @@ impl Draft {
         city.features = Arc::new(self.features);
         city.water = Arc::new(self.water);
         city.land_use = Arc::new(self.land_use);
+        if let Some(terrain) =
+            self.terrain.and_then(|t| t.crop(city.target.bounds().grown(AROUND_M)))
+        {
+            city.lay(terrain);
+        }
         Ok(Imported { city, warnings })
     }
 

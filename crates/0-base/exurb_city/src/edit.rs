@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use crate::{Area, Block, Building, City, Feature, Parcel, StreetGraph};
+use crate::{Area, Block, Building, City, Feature, Parcel, StreetGraph, terrain};
 
 /// What an operation changes: whole layers, each shared with whoever made it. Layers that are
 /// `None` stay as they are, and stay shared with the city before.
@@ -25,12 +25,15 @@ pub struct Edit {
 }
 
 impl Edit {
-    /// The next city. What hangs on a replaced layer and is not replaced with it goes: new streets
+    /// The next city. New junctions of height 0 get the terrain's. What hangs on a replaced layer and is not replaced with it goes: new streets
     /// drop blocks, parcels and buildings; new blocks drop parcels and buildings; new parcels drop
     /// nothing.
     pub fn apply(self, city: &City) -> City {
         let mut next = city.clone();
-        if let Some(streets) = self.streets {
+        if let Some(mut streets) = self.streets {
+            if let Some(terrain) = &city.terrain {
+                terrain::elevate(&mut streets, terrain);
+            }
             next.streets = Arc::new(streets);
             (next.blocks, next.parcels, next.buildings) = Default::default();
             next.features = Arc::default();

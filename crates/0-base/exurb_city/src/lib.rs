@@ -14,6 +14,8 @@
 //! | [`parcel`], [`building`], [`feature`], [`area`] | what lies in the blocks |
 //! | [`provenance`] | origin and source of elements |
 //! | [`mod@simplify`] | dual carriageways → one street, small roundabouts → junctions |
+//! | [`terrain`] | the ground: heights on a grid |
+//! | [`land`] | what methods ask of the ground: height, slope, wet or dry |
 //! | [`hierarchy`] | levels of streets, and strokes |
 //! | [`mod@laws`] | what every city keeps, and its likeness gates |
 //! | [`densest_square`] | the window that stands for a city in comparisons |
@@ -32,6 +34,7 @@ mod facades;
 pub mod feature;
 pub mod given;
 pub mod hierarchy;
+pub mod land;
 pub mod laws;
 mod lonlat_bbox;
 pub mod parcel;
@@ -42,6 +45,7 @@ pub mod role;
 pub mod simplify;
 pub mod street_graph;
 pub mod street_map;
+pub mod terrain;
 
 pub use area::Area;
 pub use block::{Block, BlockClass};
@@ -51,6 +55,7 @@ pub use draft::{Draft, DraftError, ImportOptions, Imported, Part};
 pub use edit::Edit;
 pub use feature::{Feature, FeatureShape};
 pub use hierarchy::{Hierarchy, Stroke, assign_levels, strokes};
+pub use land::Land;
 pub use laws::{LawReport, laws};
 pub use parcel::Parcel;
 pub use provenance::{Origin, Provenance};
@@ -59,3 +64,4 @@ pub use role::{Class, Role};
 pub use simplify::{Simplify, simplify};
 pub use street_graph::{Junction, Street, StreetGraph};
 pub use street_map::{StreetMap, Way};
+pub use terrain::{Terrain, TerrainError};

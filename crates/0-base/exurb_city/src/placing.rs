@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use exurb_geom::{Bounds, BoxGrid, GridPoint, Polygon, SegmentGrid, Vec2, polyline};
+use exurb_geom::{BoxGrid, GridPoint, Polygon, SegmentGrid, Vec2, polyline};
 use exurb_graph::EdgeId;
 use rayon::prelude::*;
 
@@ -85,7 +85,7 @@ pub fn use_land(blocks: &mut [Block], land_use: &[Area]) {
 
 /// The class of the areas, of which the first that holds a point decides, over most of a polygon.
 fn prevailing(polygon: &Polygon, areas: &[&Area]) -> Option<Arc<str>> {
-    let samples = samples(polygon);
+    let samples = polygon.lattice((polygon.area_m2() / SAMPLES).sqrt().max(0.5));
     let mut votes: Vec<(&Arc<str>, usize)> = Vec::new();
     for p in &samples {
         let Some(area) = areas.iter().find(|a| a.polygon.contains(*p)) else { continue };
@@ -95,34 +95,6 @@ fn prevailing(polygon: &Polygon, areas: &[&Area]) -> Option<Arc<str>> {
         }
     }
     votes.into_iter().find(|(_, n)| 2 * n > samples.len()).map(|(class, _)| class.clone())
-}
-
-/// Points of a square grid inside a polygon, about [`SAMPLES`] of them; its interior point where
-/// the grid misses it. Row by row, between the crossings of the boundary.
-fn samples(polygon: &Polygon) -> Vec<GridPoint> {
-    let Bounds { min, max } = polygon.bounds();
-    let step = (polygon.area_m2() / SAMPLES).sqrt().max(0.5);
-    let mut out = Vec::new();
-    let mut crossings: Vec<f64> = Vec::new();
-    for row in 0..=((max.y - min.y) / step) as u32 {
-        let y = min.y + (f64::from(row) + 0.5) * step;
-        let cut = polygon.segments().map(|(a, b)| (a.to_m(), b.to_m()));
-        crossings.clear();
-        crossings.extend(
-            cut.filter(|(a, b)| (a.y > y) != (b.y > y))
-                .map(|(a, b)| a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y)),
-        );
-        crossings.sort_by(f64::total_cmp);
-        for inside in crossings.chunks_exact(2) {
-            let column = |x: f64| (x - min.x) / step - 0.5;
-            let (first, last) = (column(inside[0]).ceil() as i64, column(inside[1]).floor() as i64);
-            out.extend((first..=last).map(|i| GridPoint::m(min.x + (i as f64 + 0.5) * step, y)));
-        }
-    }
-    if out.is_empty() {
-        out.push(GridPoint::round(polygon.interior_point()));
-    }
-    out
 }
 
 /// Tells parcels whether they lie on a street: at least 3 m of their boundary no farther from a

@@ -76,6 +76,18 @@ impl Crs {
         place.is_valid().then_some(place)
     }
 
+    /// The coordinates of a place, as [`Crs::to_lonlat`] takes them; `None` out of reach.
+    pub fn from_lonlat(&self, place: LonLat) -> Option<(f64, f64)> {
+        if !place.is_valid() {
+            return None;
+        }
+        let mut p = (place.lon.to_radians(), place.lat.to_radians(), 0.0);
+        proj4rs::transform::transform(&self.wgs84, &self.system, &mut p).ok()?;
+        let (x, y, _) = p;
+        let at = if self.is_geographic() { (x.to_degrees(), y.to_degrees()) } else { (x, y) };
+        (at.0.is_finite() && at.1.is_finite()).then_some(at)
+    }
+
     fn from_proj(text: &str) -> Option<Self> {
         Self::of(Proj::from_proj_string(text).ok()?)
     }
@@ -107,6 +119,8 @@ mod tests {
             let place = crs.to_lonlat(x, y).expect("in reach");
             let off = (place.lon - lon).abs().max((place.lat - lat).abs());
             assert!(off < tolerance, "EPSG:{code}: {place:?}");
+            let back = crs.from_lonlat(place).expect("in reach");
+            assert!((back.0 - x).abs().max((back.1 - y).abs()) < 1e-3, "EPSG:{code}: {back:?}");
         }
     }
 

@@ -10,6 +10,8 @@
 //! | [`grid`] | the 1 mm grid and its exact predicates |
 //! | [`polyline`] | lengths, positions, curvature and distances of lines |
 //! | [`polygon`] | polygons with holes |
+//! | [`cells`] | a square grid, and which cells a polygon covers |
+//! | [`contour`] | areas of a grid of values below a threshold |
 //! | [`oriented_box`] | smallest enclosing rectangle |
 //! | [`rigid`] | motions that keep lengths |
 //! | [`split`] | cutting a polygon along a line |
@@ -37,10 +39,13 @@
 mod bounds;
 pub mod box_grid;
 mod cell_table;
+pub mod cells;
+pub mod contour;
 mod convert;
 pub mod crs;
 pub mod enclosing_circle;
 pub mod grid;
+mod lattice;
 pub mod mean_value;
 pub mod offset;
 pub mod oriented_box;
@@ -63,6 +68,7 @@ pub mod voronoi;
 
 pub use bounds::Bounds;
 pub use box_grid::BoxGrid;
+pub use cells::{Cell, Cells};
 pub use crs::Crs;
 pub use enclosing_circle::Circle;
 pub use glam::DVec2 as Vec2;

@@ -48,12 +48,10 @@ impl Frame {
         }
         let round = |v: f64| (v * 1e7).round() / 1e7;
         let origin = LonLat { lon: round(lon), lat: round(lat) };
-        let local = format!(
-            "+proj=tmerc +lat_0={:.7} +lon_0={:.7} +k=1 +x_0=0 +y_0=0 +datum=WGS84 +units=m",
-            origin.lat, origin.lon
-        );
-        match (Proj::from_proj_string(&local), Proj::from_proj_string("+proj=longlat +datum=WGS84"))
-        {
+        match (
+            Proj::from_proj_string(&proj_text(origin)),
+            Proj::from_proj_string("+proj=longlat +datum=WGS84"),
+        ) {
             (Ok(local), Ok(geographic)) => Ok(Self { origin, local, geographic }),
             _ => Err(error),
         }
@@ -108,6 +106,11 @@ impl Frame {
         (lo.x < hi.x && lo.y < hi.y).then(|| Polygon::rectangle(lo, hi))
     }
 
+    /// The frame as a `proj` text, which [`crate::Crs::from_name`] reads.
+    pub fn to_proj(&self) -> String {
+        proj_text(self.origin)
+    }
+
     /// The frame as OGC well-known text (version 1), for GeoPackage and `.prj` files.
     pub fn to_wkt(&self) -> String {
         let LonLat { lon, lat } = self.origin;
@@ -123,6 +126,11 @@ impl Frame {
              AXIS[\"Easting\",EAST],AXIS[\"Northing\",NORTH]]"
         )
     }
+}
+
+fn proj_text(origin: LonLat) -> String {
+    let LonLat { lon, lat } = origin;
+    format!("+proj=tmerc +lat_0={lat:.7} +lon_0={lon:.7} +k=1 +x_0=0 +y_0=0 +datum=WGS84 +units=m")
 }
 
 impl PartialEq for Frame {

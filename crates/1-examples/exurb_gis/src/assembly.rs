@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use exurb_city::{
     Area, Block, BlockClass, Building, City, Draft, Feature, FeatureShape, ImportOptions, Imported,
-    Metadata, Parcel, Provenance, Role, StreetGraph, Way,
+    Metadata, Parcel, Provenance, Role, StreetGraph, Terrain, Way,
 };
 use exurb_geom::{Bounds, Frame, GridPoint, Polygon};
 use exurb_graph::{EdgeId, NodeId};
@@ -28,6 +28,8 @@ pub struct Assembly {
     features: Vec<Feature>,
     water: Vec<Area>,
     land_use: Vec<Area>,
+    /// The ground.
+    pub terrain: Option<Arc<Terrain>>,
 }
 
 /// A street's line may end this far from its intersections: other programs round to centimetres. A
@@ -53,6 +55,7 @@ impl Assembly {
             features: Vec::new(),
             water: Vec::new(),
             land_use: Vec::new(),
+            terrain: None,
         }
     }
 
@@ -183,6 +186,7 @@ impl Assembly {
         draft.features = self.features;
         draft.water = self.water;
         draft.land_use = self.land_use;
+        draft.terrain = self.terrain;
         draft.metadata = self.metadata;
         draft.assemble(options).map_err(|source| Error::Draft { file: self.file, source })
     }
@@ -228,6 +232,7 @@ impl Assembly {
         city.features = Arc::new(self.features);
         city.water = Arc::new(self.water);
         city.land_use = Arc::new(self.land_use);
+        city.terrain = self.terrain;
         city.metadata = self.metadata;
         Ok(city)
     }

@@ -3,6 +3,7 @@
 mod outlines;
 mod read;
 mod schema;
+mod terrain;
 mod write;
 
 pub(crate) use outlines::{is_geopackage, outlines};

@@ -10,6 +10,9 @@ pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// Key of the frame: longitude and latitude of the city's origin.
 pub const FRAME: &str = "exurb_frame";
 
+/// Key of the height up to which the terrain is under water, where one is set.
+pub const WATER_LEVEL: &str = "exurb_water_level";
+
 /// The entries of a city, in order; GeoJSON holds the same keys as foreign members.
 ///
 /// `exurb_attribution` has one line for each attribution; `exurb_gates` is a JSON object of

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use exurb_city::{
     Area, Block, BlockClass, Building, City, Class, Feature, FeatureShape, Junction, Origin,
-    Parcel, Provenance, Roof, Street, StreetGraph, Way,
+    Parcel, Provenance, Roof, Street, StreetGraph, Terrain, Way,
 };
 use exurb_geom::{Frame, GridPoint, LonLat, Polygon};
 use proptest::prelude::*;
@@ -197,6 +197,22 @@ fn way() -> impl Strategy<Value = Way> {
     )
 }
 
+/// A terrain, with a gap here and there, of one tile or several.
+pub fn terrain() -> impl Strategy<Value = Terrain> {
+    let height = prop_oneof![9 => -500.0..9000.0_f32, 1 => Just(f32::NAN)];
+    let heights = prop::collection::vec(height, 600..700);
+    let place = (point(), 1_u32..50_000, prop::sample::select(&[2_usize, 3, 25, 300][..]));
+    (heights, place, prop::option::of(-9.0..9.0)).prop_map(
+        |(mut heights, (first, cell_mm, columns), level)| {
+            heights.truncate(heights.len() / columns * columns);
+            heights[0] = 1.5;
+            let terrain =
+                Terrain::new(first, cell_mm, columns, heights).expect("a height is known");
+            terrain.with_water_level(level)
+        },
+    )
+}
+
 /// Any city, with ids from 1 in every layer.
 pub fn any_city() -> impl Strategy<Value = City> {
     let place = (-180.0..180.0, -80.0..80.0_f64);
@@ -272,5 +288,6 @@ pub fn assert_same(a: &City, b: &City) {
     assert_eq!(a.features, b.features);
     assert_eq!(a.water, b.water);
     assert_eq!(a.land_use, b.land_use);
+    assert_eq!(a.terrain, b.terrain);
     assert_eq!(a.metadata, b.metadata);
 }

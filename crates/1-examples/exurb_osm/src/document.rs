@@ -100,8 +100,15 @@ impl<'a> Document<'a> {
     fn streets(&mut self, graph: &StreetGraph) -> BTreeMap<(GridPoint, i32), i64> {
         let mut junctions = vec![0; graph.node_bound()];
         for (id, node) in graph.nodes() {
-            let runs_on = node.data.cut.then(|| ("fixme", "continue".to_owned()));
-            junctions[id.index()] = self.node(node.at, runs_on.into_iter().collect());
+            let mut tags = Vec::new();
+            if node.data.cut {
+                tags.push(("fixme", "continue".to_owned()));
+            }
+            // On flat ground nobody needs to be told the height.
+            if self.city.terrain.is_some() {
+                tags.push(("ele", format!("{:.1}", node.data.z_m)));
+            }
+            junctions[id.index()] = self.node(node.at, tags);
         }
         let mut at = BTreeMap::new();
         for (_, edge) in graph.edges() {

@@ -14,6 +14,40 @@ use serde::{Deserialize, Serialize};
 /// Problems listed at most.
 pub const MOST_PROBLEMS: usize = 100;
 
+/// The ground of a city.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Terrain {
+    /// Distance of neighbouring heights in metres.
+    pub cell: f64,
+    /// Lowest height in the target in metres.
+    pub lowest: Option<f64>,
+    /// Mean height in the target in metres.
+    pub mean: Option<f64>,
+    /// Highest height in the target in metres.
+    pub highest: Option<f64>,
+    /// Mean slope of the target, rise over run.
+    pub mean_slope: Option<f64>,
+    /// Share of the target's area where no height is known.
+    pub missing_share: f64,
+    /// Everything up to here is under water.
+    pub water_level: Option<f64>,
+}
+
+impl Terrain {
+    fn of(city: &City, terrain: &exurb_city::Terrain) -> Self {
+        let relief = terrain.relief(&city.target);
+        Self {
+            cell: terrain.cell_m(),
+            lowest: relief.map(|r| r.range_m.0),
+            mean: relief.map(|r| r.mean_m),
+            highest: relief.map(|r| r.range_m.1),
+            mean_slope: relief.map(|r| r.slope),
+            missing_share: terrain.missing_share(&city.target),
+            water_level: terrain.water_level_m(),
+        }
+    }
+}
+
 /// What is in a city.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Info {
@@ -33,6 +67,8 @@ pub struct Info {
     pub laws: BTreeMap<String, LawValue>,
     /// Likeness gates by name.
     pub likeness_gates: BTreeMap<String, GateValue>,
+    /// The ground; `None` where it is flat.
+    pub terrain: Option<Terrain>,
     /// Area of the target in km².
     pub area_km2: f64,
     /// Are all laws kept?
@@ -166,6 +202,7 @@ impl Info {
             provenance: provenance(city),
             laws: report.laws.iter().map(|law| (law.name.to_owned(), law_value(law))).collect(),
             likeness_gates: gates.iter().map(|(n, g)| ((*n).to_owned(), gate_value(g))).collect(),
+            terrain: city.terrain.as_ref().map(|terrain| Terrain::of(city, terrain)),
             area_km2: city.area_km2(),
             valid: report.is_valid(),
             problems_total: report.breaches.len(),

@@ -22,6 +22,11 @@ impl Info {
 fn figures(info: &Info, out: &mut String) {
     let Info { streets, intersections, blocks, parcels, buildings, provenance, .. } = info;
     line(out, "area", format!("{:.3} km²", info.area_km2));
+    if let Some(terrain) = &info.terrain {
+        let (low, high) = (number(terrain.lowest, 0, " m"), number(terrain.highest, 0, " m"));
+        let slope = percent(terrain.mean_slope);
+        line(out, "terrain", format!("{low} to {high}, mean slope {slope}"));
+    }
     line(out, "streets", format!("{} of {:.1} km", streets.count, streets.km));
     let lengths = |map: &std::collections::BTreeMap<String, f64>| {
         let known: Vec<String> =

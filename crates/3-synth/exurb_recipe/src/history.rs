@@ -6,7 +6,8 @@ use std::time::Instant;
 use exurb_operation::Run;
 
 use crate::{
-    Error, Inputs, Recipe, Registry, Source, Step, Target, Within, attached, open, read_example,
+    Error, Inputs, Recipe, Registry, Source, Step, Target, TerrainSource, Within, attached, open,
+    read_example,
 };
 
 impl Recipe {
@@ -14,9 +15,12 @@ impl Recipe {
     /// exports, so that the same work gives the same bytes in whatever folder it is done.
     pub fn portable(&self, registry: &Registry) -> Self {
         let mut recipe = Self { threads: None, exports: Vec::new(), ..self.clone() };
+        let mut terrains: Vec<&mut TerrainSource> = recipe.terrain.iter_mut().collect();
         for source in recipe.examples.iter_mut().chain(&mut recipe.city) {
             source.file = file_name(&source.file);
+            terrains.extend(&mut source.terrain);
         }
+        terrains.into_iter().for_each(|terrain| terrain.file = file_name(&terrain.file));
         if let Some(Target::File(file)) = &mut recipe.target {
             *file = file_name(file);
         }
@@ -37,7 +41,8 @@ impl Recipe {
     /// step to the last. A city without a recipe (an import) stays named as the beginning.
     pub fn after(self, history: &str, registry: &Registry) -> Self {
         let Some(city) = &self.city else { return self };
-        let taken_whole = city.bbox.is_none() && city.part.is_none() && !city.with_service;
+        let taken_whole = Source { file: city.file.clone(), ..Source::new("") }
+            == Source { id: None, name: None, weight: 1.0, ..city.clone() };
         let earlier = Self::parse_with(history, "", registry);
         let (true, Ok(mut whole)) = (taken_whole && !history.is_empty(), earlier) else {
             return self;
@@ -51,6 +56,7 @@ impl Recipe {
             let before: Vec<String> = whole.examples[..was].iter().map(Source::key).collect();
             limit(&mut whole.steps, &before);
         }
+        whole.terrain = self.terrain.or(whole.terrain);
         let mut steps = self.steps;
         limit(&mut steps, &names);
         for mut step in steps {

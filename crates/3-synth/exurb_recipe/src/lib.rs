@@ -15,6 +15,7 @@
 //! | [`builtin`] | the examples that come with the program |
 //! | [`Registry`] | every operation of the stage crates |
 //! | [`Size`], `target` | where a new city lies |
+//! | [`TerrainSource`] | the ground, from a height map |
 //!
 //! ```
 //! use exurb_recipe::{Recipe, Registry};
@@ -38,6 +39,7 @@ mod registry;
 mod run;
 mod size;
 mod target;
+mod terrain;
 #[cfg(test)]
 mod test_operation;
 
@@ -48,3 +50,5 @@ pub use recipe::{Export, Half, Recipe, Source, Step, Target, VERSION, Within};
 pub use registry::{Registry, needs_city};
 pub use run::{Inputs, Made, Seconds, read_example, read_source};
 pub use size::Size;
+pub use terrain::lay as lay_terrain;
+pub use terrain::{Gaps, TargetWord, TerrainBounds, TerrainSource};

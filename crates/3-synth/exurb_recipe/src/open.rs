@@ -48,6 +48,11 @@ pub fn format_of(path: &Path) -> Result<Format, Error> {
     })
 }
 
+/// Is it a GeoPackage?
+pub fn is_geopackage(path: &Path) -> Result<bool, Error> {
+    Ok(format::detect(path, &head(path)?) == Some(Format::GeoPackage))
+}
+
 /// Where a file is: beside the recipe, else in the current folder.
 pub fn locate(file: &Path, folder: &Path) -> Result<PathBuf, Error> {
     if builtin::name_of(file).is_some() {

@@ -5,7 +5,7 @@ use exurb_geom::LonLat;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use crate::Size;
+use crate::{Size, TerrainSource};
 
 /// The version of the recipe format that this program reads and writes.
 pub const VERSION: u32 = 1;
@@ -30,6 +30,9 @@ pub struct Recipe {
     /// Where and how large a new city is.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub target: Option<Target>,
+    /// The ground under the city; that of a given city stays without.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub terrain: Option<TerrainSource>,
     /// What the steps learn from. Without any, a step learns from the given city as it is before
     /// the step.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -67,6 +70,9 @@ pub struct Source {
     /// Let service roads and the like count as streets.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub with_service: bool,
+    /// The ground under it, from a height map.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub terrain: Option<TerrainSource>,
 }
 
 /// A half of an example; see [`Part`].
@@ -169,6 +175,7 @@ impl Default for Recipe {
             threads: None,
             city: None,
             target: None,
+            terrain: None,
             examples: Vec::new(),
             steps: Vec::new(),
             exports: Vec::new(),
@@ -181,7 +188,7 @@ impl Source {
     pub fn new(file: impl Into<PathBuf>) -> Self {
         let file = file.into();
         let (id, name, bbox, part) = (None, None, None, None);
-        Self { file, id, name, weight: 1.0, bbox, part, with_service: false }
+        Self { file, id, name, weight: 1.0, bbox, part, with_service: false, terrain: None }
     }
 
     /// The word by which steps choose it: its id, else its name.

@@ -11,6 +11,7 @@ use serde_json::Value;
 
 use crate::{
     Error, Recipe, Registry, Source, Step, Target, Within, attached, fixed, open, registry, target,
+    terrain,
 };
 
 /// What a recipe reads before it works.
@@ -64,7 +65,10 @@ impl Recipe {
         for source in &self.examples {
             examples.push(read_example(source, folder, run)?);
         }
-        let city = self.first_city(&examples, folder, registry, run)?;
+        let mut city = self.first_city(&examples, folder, registry, run)?;
+        if let Some(source) = &self.terrain {
+            terrain::lay(&mut city, source, folder, run)?;
+        }
         run.check()?;
         Ok(Inputs { city, examples, read_seconds: started.elapsed().as_secs_f64() })
     }
@@ -165,6 +169,9 @@ pub fn read_source(source: &Source, folder: &Path, run: &Run) -> Result<City, Er
     }
     let run = run.named(&source.name());
     warnings.into_iter().for_each(|warning| run.warn(warning));
+    if let Some(source) = &source.terrain {
+        terrain::lay(&mut city, source, folder, &run)?;
+    }
     run.check()?;
     Ok(city)
 }

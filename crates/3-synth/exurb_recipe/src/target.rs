@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use exurb_city::{City, ImportOptions};
+use exurb_city::{City, ImportOptions, Imported};
 use exurb_geom::{Frame, GridPoint, Polygon, Vec2};
 use exurb_operation::Run;
 
@@ -10,7 +10,8 @@ use crate::format::Format;
 use crate::{Error, Size, Target, open};
 
 /// The empty city of a target: a rectangle lies in the first example's frame around its centre, the
-/// polygon of a file in a frame of its own, whose origin is the polygon's centre.
+/// polygon of a file in a frame of its own, whose origin is the polygon's centre. The target of a
+/// city file brings its ground: terrain and water.
 pub fn begin(
     target: &Target,
     first: Option<&City>,
@@ -21,7 +22,17 @@ pub fn begin(
         Target::Size(size) => Ok(rectangle(*size, first)),
         Target::File(file) => {
             let (frame, polygon) = read(file, None, folder, run)?;
-            Ok(City::empty(frame, polygon))
+            let mut city = City::empty(frame, polygon);
+            let path = open::locate(file, folder)?;
+            if open::format_of(&path)? == Format::GeoPackage
+                && let Ok(Imported { city: given, .. }) =
+                    open::open_city(&path, &ImportOptions::default())
+                && given.frame == city.frame
+            {
+                (city.terrain, city.water) = (given.terrain, given.water);
+                city.metadata.credit(&given.metadata.attribution);
+            }
+            Ok(city)
         }
     }
 }

@@ -48,10 +48,12 @@ fn empty() -> [Part; 3] {
     [Material::Plain, Material::Windows, Material::Glass].map(Part::new)
 }
 
-/// A building to show, and what it is used for.
+/// A building to show, what it is used for, and the ground it stands on.
 struct Shown<'a> {
     building: &'a Building,
     usage: &'a str,
+    /// Its own footprint, or that of the building it is a part of.
+    footing: &'a Polygon,
 }
 
 /// Parts stand for the building around them where they cover most of it (as OSM's simple 3D
@@ -64,6 +66,7 @@ fn shown<'a>(site: &Site<'a>) -> Vec<Shown<'a>> {
         index.insert(i, at, at);
     }
     let mut usage: Vec<&str> = all.iter().map(|b| b.usage.as_deref().unwrap_or("yes")).collect();
+    let mut footings: Vec<&Polygon> = all.iter().map(|b| &b.polygon).collect();
     let mut is_hidden = vec![false; all.len()];
     for (k, building) in all.iter().enumerate().filter(|(_, b)| !b.is_part && !index.is_empty()) {
         let mut covered_m2 = 0.0;
@@ -71,6 +74,7 @@ fn shown<'a>(site: &Site<'a>) -> Vec<Shown<'a>> {
             let part = &all[i as usize].polygon;
             if building.polygon.contains(GridPoint::round(part.interior_point())) {
                 covered_m2 += part.area_m2();
+                footings[i as usize] = &building.polygon;
                 if usage[i as usize] == "yes" {
                     usage[i as usize] = usage[k];
                 }
@@ -79,8 +83,9 @@ fn shown<'a>(site: &Site<'a>) -> Vec<Shown<'a>> {
         is_hidden[k] = covered_m2 > 0.6 * building.polygon.area_m2();
     }
     let near = |b: &Building| b.polygon.bounds().intersects(site.bounds);
-    let listed = all.iter().zip(usage).zip(is_hidden).filter(|((b, _), hidden)| !hidden && near(b));
-    listed.map(|((building, usage), _)| Shown { building, usage }).collect()
+    let all = all.iter().zip(usage).zip(footings).zip(is_hidden);
+    let listed = all.filter(|(((b, _), _), hidden)| !hidden && near(b));
+    listed.map(|(((building, usage), footing), _)| Shown { building, usage, footing }).collect()
 }
 
 fn add(site: &Site, shown: &Shown, parts: &mut [Part; 3]) {
@@ -106,7 +111,8 @@ fn add(site: &Site, shown: &Shown, parts: &mut [Part; 3]) {
     };
     let (wall, roof) = colors(id, kind, material, !top.faces.is_empty() || shape == Roof::Skillion);
     let body = Body {
-        axes: site.axes,
+        // On the lowest ground, so that no wall hangs in the air.
+        axes: site.axes.lifted(site.drape.lowest_m(shown.footing)),
         polygon: &polygon,
         base_m: foot_m,
         top: &top,

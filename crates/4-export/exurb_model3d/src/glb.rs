@@ -52,7 +52,7 @@ pub fn to_glb(city: &City, options: &Options) -> Result<Vec<u8>, Error> {
 fn asset(city: &City, scene: &Scene) -> Result<json::Asset, Error> {
     let origin = city.frame.origin();
     let place = city.frame.unproject(scene.center);
-    let extras = json!({
+    let mut extras = json!({
         "georeference": {
             "frame_origin": { "lon": origin.lon, "lat": origin.lat },
             "frame_wkt": city.frame.to_wkt(),
@@ -62,6 +62,9 @@ fn asset(city: &City, scene: &Scene) -> Result<json::Asset, Error> {
         },
         "attribution": city.metadata.attribution,
     });
+    if city.terrain.is_some() {
+        extras["georeference"]["model_origin_height_m"] = json!(scene.datum_m);
+    }
     Ok(json::Asset {
         copyright: Some(city.metadata.attribution.join("; ")).filter(|c| !c.is_empty()),
         extras: Some(to_raw_value(&extras)?),

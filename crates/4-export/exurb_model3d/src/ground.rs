@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use exurb_city::{Area, Block, BlockClass, Parcel, area};
-use exurb_geom::{GridPoint, Polygon, SegmentIndex, overlay};
+use exurb_geom::{GridPoint, Polygon, SegmentIndex, Vec2, overlay, polyline};
 use rayon::prelude::*;
 
 use crate::mesh::Facing;
@@ -19,16 +19,123 @@ pub const BLOCK_M: f64 = 0.12;
 pub const GROUND_M: f64 = -0.25;
 const LAND_USE_M: f64 = -0.12;
 const WATER_M: f64 = -0.8;
+/// A cut through the ground reaches this far under its lowest place.
+const SOLID_M: f64 = 5.0;
 
 /// Larger lots are not paved, in m².
 const LARGEST_YARD_M2: f64 = 4000.0;
 
-pub fn layers(site: &Site) -> Vec<Layer> {
+/// Water that is shown, joined.
+pub struct Waters {
+    areas: Vec<Area>,
+    bodies: Vec<Body>,
+}
+
+/// Areas of water that touch, and how high they stand.
+struct Body {
+    id: u32,
+    polygon: Polygon,
+    /// Height of its surface less [`WATER_M`]; `None` where it runs down the ground.
+    level_m: Option<f64>,
+}
+
+impl Waters {
+    /// The water of a site. Ground around standing water is raised to its level.
+    pub fn of(site: &mut Site) -> Self {
+        let mut areas = clipped(&site.city.water, &rectangle(site));
+        if !site.drape.is_flat() {
+            areas.iter_mut().for_each(|area| run_on(site, &mut area.polygon));
+        }
+        // Rings of one class that overlap would shimmer: their union is what is seen. The first
+        // area of the union lends its number.
+        let mut bodies = Vec::new();
+        for polygon in overlay::union(areas.iter().map(|a| &a.polygon)) {
+            let inside = |a: &&Area| a.polygon.bounds().intersects(polygon.bounds());
+            let area = areas.iter().find(inside);
+            let (id, class) = area.map_or((0, ""), |a| (a.id, &*a.class));
+            let level_m = level_m(site, &polygon, class);
+            if let Some(level_m) = level_m {
+                site.drape.raise(&polygon, level_m);
+            }
+            bodies.push(Body { id, polygon, level_m });
+        }
+        Self { areas, bodies }
+    }
+}
+
+/// Water that is cut off at the target's box goes on to the page's edge.
+fn run_on(site: &Site, polygon: &mut Polygon) {
+    let (inner, outer) = (site.city.target.bounds(), site.bounds);
+    let mut pieces = vec![polygon.clone()];
+    for (a, b) in polygon.segments() {
+        let (a, b) = (a.to_m(), b.to_m());
+        let on = |v: f64, w: f64, edge: f64| (v - edge).abs().max((w - edge).abs()) < 0.05;
+        let out = match () {
+            () if on(a.x, b.x, inner.min.x) => Vec2::new(outer.min.x - inner.min.x, 0.0),
+            () if on(a.x, b.x, inner.max.x) => Vec2::new(outer.max.x - inner.max.x, 0.0),
+            () if on(a.y, b.y, inner.min.y) => Vec2::new(0.0, outer.min.y - inner.min.y),
+            () if on(a.y, b.y, inner.max.y) => Vec2::new(0.0, outer.max.y - inner.max.y),
+            () => continue,
+        };
+        let ring = [a, b, b + out, a + out].map(GridPoint::round).to_vec();
+        pieces.extend(Polygon::new(ring, Vec::new()));
+    }
+    if pieces.len() > 1
+        && let Some(joined) = overlay::union(&pieces).into_iter().next()
+    {
+        *polygon = joined;
+    }
+}
+
+/// The level of standing water: the middle height of the ground it covers, or of its shore. Rivers
+/// stand only where they hardly fall; the sea always does.
+fn level_m(site: &Site, polygon: &Polygon, class: &str) -> Option<f64> {
+    const STANDS_M: f64 = 4.0;
+    if site.drape.is_flat() {
+        return Some(0.0);
+    }
+    let mut heights = site.drape.heights_in(polygon);
+    if heights.len() < 4 {
+        let shore = polygon.exterior().iter().map(|p| site.drape.height_m(p.to_m()));
+        heights = shore.collect();
+    }
+    heights.sort_by(f64::total_cmp);
+    let at = |share: usize| heights[(heights.len() - 1) * share / 10];
+    (class == "sea" || at(9) - at(1) <= STANDS_M).then(|| at(4))
+}
+
+/// Does the country around go on as water: is a good part of the page's edge standing water?
+pub fn is_by_the_sea(site: &Site, waters: &Waters) -> bool {
+    const SHARE: usize = 4;
+    const PLACES: usize = 200;
+    if site.drape.is_flat() {
+        return false;
+    }
+    let edge = polyline::to_m(rectangle(site).exterior());
+    let around = [&edge[..], &edge[..1]].concat();
+    let step_m = polyline::length(&around) / PLACES as f64;
+    let wet = |p: &Vec2| {
+        // A little inside, where water is cut off.
+        let p = GridPoint::round(p.lerp(site.bounds.center(), 0.001));
+        waters.bodies.iter().any(|b| b.level_m.is_some() && b.polygon.contains(p))
+    };
+    polyline::resample(&around, step_m).iter().filter(|p| wet(p)).count() * SHARE > PLACES
+}
+
+/// Height of the lowest ground or water, over the model's origin.
+pub fn lowest_m(site: &Site, waters: &Waters) -> f64 {
+    if site.drape.is_flat() {
+        return GROUND_M;
+    }
+    let levels = waters.bodies.iter().filter_map(|body| body.level_m).map(|m| m + WATER_M);
+    levels.fold(site.drape.lowest_m(&rectangle(site)) + GROUND_M, f64::min)
+}
+
+pub fn layers(site: &Site, waters: &Waters) -> Vec<Layer> {
     let city = site.city;
     let page = rectangle(site);
-    let water: Vec<Area> = clipped(&city.water, &page);
     let land_use = clipped(&city.land_use, &page);
-    let wet = Wet::of(&water);
+    let wet = Wet::of(&waters.areas);
     let mut lots: BTreeMap<u32, Vec<&Parcel>> = BTreeMap::new();
     city.parcels.iter().for_each(|lot| lots.entry(lot.block).or_default().push(lot));
     let of_block = |block: &Block| lots.get(&block.id).map_or(&[][..], |lots| lots);
@@ -41,7 +148,7 @@ pub fn layers(site: &Site) -> Vec<Layer> {
     blocks.iter().for_each(|part| all_blocks.append(part));
     vec![
         ground(site, &page, &wet),
-        water_layer(site, &water),
+        water_layer(site, waters),
         land_use_layer(site, &land_use, &wet),
         Layer { name: "blocks", parts: vec![all_blocks] },
     ]
@@ -106,25 +213,39 @@ fn ground(site: &Site, page: &Polygon, wet: &Wet) -> Layer {
     let mut part = Part::new(Material::Plain);
     part.begin(0);
     for piece in overlay::difference(page, wet.polygons()) {
-        part.mesh.horizontal(site.axes, &piece, GROUND_M, linear(GROUND), Facing::Up);
+        site.drape.lay(&mut part.mesh, site.axes, &piece, GROUND_M, linear(GROUND));
+    }
+    if !site.drape.is_flat() {
+        // The cut through the ground along the page's edge.
+        let foot_m = site.drape.lowest_m(page) + GROUND_M - SOLID_M;
+        for (a, b) in page.segments() {
+            let ends = [a.to_m(), b.to_m()];
+            let color = linear(BANK);
+            site.drape.wall(&mut part.mesh, site.axes, ends, |_| foot_m, |h| h + GROUND_M, color);
+        }
     }
     Layer { name: "ground", parts: vec![part] }
 }
 
-fn water_layer(site: &Site, water: &[Area]) -> Layer {
+fn water_layer(site: &Site, waters: &Waters) -> Layer {
     let mut surface = Part::new(Material::Water);
     let mut banks = Part::new(Material::Plain);
-    // Rings of one class that overlap would shimmer: their union is what is seen. The first area
-    // of the union lends its number.
-    for polygon in overlay::union(water.iter().map(|a| &a.polygon)) {
-        let inside = |a: &&Area| a.polygon.bounds().intersects(polygon.bounds());
-        let id = water.iter().find(inside).map_or(0, |a| a.id);
-        surface.begin(id);
-        surface.mesh.horizontal(site.axes, &polygon, WATER_M, linear(WATER), Facing::Up);
-        banks.begin(id);
+    for Body { id, polygon, level_m } in &waters.bodies {
+        surface.begin(*id);
+        match level_m {
+            Some(level_m) => {
+                let (height_m, color) = (level_m + WATER_M, linear(WATER));
+                surface.mesh.horizontal(site.axes, polygon, height_m, color, Facing::Up);
+            }
+            None => site.drape.lay(&mut surface.mesh, site.axes, polygon, WATER_M, linear(WATER)),
+        }
+        banks.begin(*id);
         for (a, b) in polygon.segments() {
             // Seen from the water: the bank faces inwards.
-            banks.mesh.wall(site.axes, b.to_m(), a.to_m(), WATER_M, GROUND_M, linear(BANK));
+            let ends = [b.to_m(), a.to_m()];
+            let from = |h: f64| level_m.unwrap_or(h) + WATER_M;
+            let to = |h: f64| h + GROUND_M;
+            site.drape.wall(&mut banks.mesh, site.axes, ends, from, to, linear(BANK));
         }
     }
     Layer { name: "water", parts: vec![surface, banks] }
@@ -146,7 +267,7 @@ fn land_use_layer(site: &Site, land_use: &[Area], wet: &Wet) -> Layer {
         part.begin(area.id);
         let color = linear(palette::ground_of(Some(&area.class)));
         for piece in pieces {
-            part.mesh.horizontal(site.axes, piece, LAND_USE_M, color, Facing::Up);
+            site.drape.lay(&mut part.mesh, site.axes, piece, LAND_USE_M, color);
         }
     }
     Layer { name: "land_use", parts: vec![part] }
@@ -158,12 +279,14 @@ fn block_part(site: &Site, block: &Block, lots: &[&Parcel], land_use: &[Area], w
     part.begin(block.id);
     for piece in wet.dry(&block.polygon) {
         for (a, b) in piece.segments() {
-            part.mesh.wall(site.axes, a.to_m(), b.to_m(), GROUND_M, BLOCK_M, linear(KERB));
+            let ends = [a.to_m(), b.to_m()];
+            let (from, to) = (|h: f64| h + GROUND_M, |h: f64| h + BLOCK_M);
+            site.drape.wall(&mut part.mesh, site.axes, ends, from, to, linear(KERB));
         }
     }
     let mut top = |polygon: &Polygon, color| {
         for piece in wet.dry(polygon) {
-            part.mesh.horizontal(site.axes, &piece, BLOCK_M, color, Facing::Up);
+            site.drape.lay(&mut part.mesh, site.axes, &piece, BLOCK_M, color);
         }
     };
     if block.class == BlockClass::Island {

@@ -5,11 +5,12 @@
 //! 2. [`to_glb`], [`to_obj`] write them; [`render_png`] looks at them.
 //!
 //! Lengths are metres; x points east, y up, z south; the origin lies on the ground at the middle of
-//! the target. Surfaces that meet share no plane with others, so that viewers do not flicker.
+//! the target. On a terrain everything lies draped over it (`drape`). Surfaces that meet share no plane with others, so that viewers do not flicker.
 //! Whatever a map does not tell (roof shapes, heights, colours) is filled in by the element's
 //! number, the same in every run.
 
 mod buildings;
+mod drape;
 mod error;
 mod facade;
 mod glb;
@@ -34,5 +35,7 @@ pub use options::Options;
 pub use render::{View, render_png};
 pub use scene::{Layer, Material, Part, Scene};
 
+#[cfg(test)]
+mod terrain_tests;
 #[cfg(test)]
 mod tests;

@@ -26,13 +26,20 @@ pub struct Mesh {
 pub struct Axes {
     /// What becomes (0, 0), in metres of the city's frame.
     pub center: Vec2,
+    /// Added to heights: that of the ground under a building.
+    pub lift_m: f64,
 }
 
 impl Axes {
-    /// The place `height_m` above the ground at `p`.
+    /// The same, with everything `lift_m` higher.
+    pub fn lifted(self, lift_m: f64) -> Self {
+        Self { lift_m, ..self }
+    }
+
+    /// The place over `p` at a height.
     pub fn place(&self, p: Vec2, height_m: f64) -> DVec3 {
         let q = p - self.center;
-        DVec3::new(q.x, height_m, -q.y)
+        DVec3::new(q.x, height_m + self.lift_m, -q.y)
     }
 }
 

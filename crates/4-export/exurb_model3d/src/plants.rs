@@ -50,7 +50,7 @@ fn tree(site: &Site, mesh: &mut Mesh, at: Vec2, dice: u32) {
     }
     let size = 0.75 + 0.6 * share(dice, 1);
     let (radius_m, trunk_m) = (2.3 * size, 2.2 * size);
-    let base = site.axes.place(at, BLOCK_M - 0.3);
+    let base = site.axes.place(at, site.drape.height_m(at) + BLOCK_M - 0.3);
     prism(mesh, base, 0.18 * size, trunk_m + 1.2, 5, linear(TRUNK));
     let middle = base + DVec3::Y * (trunk_m + radius_m * 1.05);
     let stretch = 1.05 + 0.35 * share(dice, 2);
@@ -112,7 +112,7 @@ fn lamp(site: &Site, mesh: &mut Mesh, at: Vec2) {
     if !site.bounds.contains(at) {
         return;
     }
-    let base = site.axes.place(at, BLOCK_M - 0.2);
+    let base = site.axes.place(at, site.drape.height_m(at) + BLOCK_M - 0.2);
     prism(mesh, base, 0.07, 5.2, 4, linear(LAMP));
     prism(mesh, base + DVec3::Y * 5.2, 0.22, 0.4, 4, linear(LAMP_HEAD));
 }

@@ -3,6 +3,7 @@
 use exurb_city::City;
 use exurb_geom::{Bounds, Vec2};
 
+use crate::drape::Drape;
 use crate::mesh::{Axes, Mesh};
 use crate::{Options, buildings, ground, plants, streets};
 
@@ -98,6 +99,12 @@ pub struct Scene {
     pub center: Vec2,
     /// The ground that is shown, in the city's frame.
     pub bounds: Bounds,
+    /// Height of the origin over the zero of the city's terrain, in metres.
+    pub datum_m: f64,
+    /// Height of the lowest ground or water, over the origin.
+    pub lowest_m: f64,
+    /// Goes the country around on as water?
+    pub by_the_sea: bool,
 }
 
 /// Ground around all that stands in the city, in metres.
@@ -118,9 +125,12 @@ impl Scene {
         let bounds = extent(city).grown(MARGIN_M);
         let center = city.target.bounds().center();
         let center = Vec2::new(center.x.round(), center.y.round());
-        let site = Site { city, axes: Axes { center }, bounds, options };
+        let drape = Drape::of(city, bounds, center);
+        let axes = Axes { center, lift_m: 0.0 };
+        let mut site = Site { city, axes, bounds, options, drape };
+        let water = ground::Waters::of(&mut site);
         let (ground, (streets, (buildings, features))) = rayon::join(
-            || ground::layers(&site),
+            || ground::layers(&site, &water),
             || {
                 rayon::join(
                     || streets::layer(&site),
@@ -136,7 +146,9 @@ impl Scene {
             layer.parts.retain(|part| !part.mesh.indices.is_empty());
         }
         layers.retain(|layer| !layer.parts.is_empty());
-        Self { layers, center, bounds }
+        let lowest_m = ground::lowest_m(&site, &water);
+        let by_the_sea = ground::is_by_the_sea(&site, &water);
+        Self { layers, center, bounds, datum_m: site.drape.datum_m, lowest_m, by_the_sea }
     }
 
     /// Number of triangles.
@@ -151,4 +163,5 @@ pub struct Site<'a> {
     pub axes: Axes,
     pub bounds: Bounds,
     pub options: &'a Options,
+    pub drape: Drape,
 }

@@ -36,12 +36,14 @@ pub fn layer(site: &Site) -> Layer {
         }
         let ends = [edge.from, edge.to].map(|n| node_height_m(site, n));
         if street.crossing_level() > 0 || ends != [0.0, 0.0] {
-            bridge(site, &mut part.mesh, &line, street, ends);
+            let feet = [edge.from, edge.to].map(|n| foot_m(site, n));
+            bridge(site, &mut part.mesh, &line, street, ends, feet);
         } else {
             let ribbon = Ribbon { line: &line, half_m: street.width_m() / 2.0 };
-            ribbon.surface(site, &mut part.mesh, |_| level_m(street.class), color(street.class));
+            let lie = Lie::Ground(level_m(street.class));
+            ribbon.surface(site, &mut part.mesh, lie, color(street.class));
             if site.options.markings {
-                center_line(site, &mut part.mesh, &line, street, |_| MARK_M);
+                center_line(site, &mut part.mesh, &line, street, Lie::Ground(MARK_M));
             }
         }
     }
@@ -59,7 +61,8 @@ fn other_ways(site: &Site) -> Vec<Part> {
         let line = clean(&polyline::to_m(&way.line));
         if street.crossing_level() == 0 && line.len() >= 2 && shown(site, &way.line) {
             let ribbon = Ribbon { line: &line, half_m: street.width_m().min(5.0) / 2.0 };
-            ribbon.surface(site, &mut part.mesh, |_| BLOCK_M + 0.04, color(street.class));
+            let lie = Lie::Ground(BLOCK_M + 0.04);
+            ribbon.surface(site, &mut part.mesh, lie, color(street.class));
         }
     }
     vec![part]
@@ -88,21 +91,76 @@ fn node_height_m(site: &Site, node: NodeId) -> f64 {
     f64::from(levels.min().unwrap_or(0).max(0)) * STOREY_M
 }
 
-fn bridge(site: &Site, mesh: &mut Mesh, line: &[Vec2], street: &Street, ends: [f64; 2]) {
+/// What the storeys of a node stand on: the ground, or what the city says of its height where no
+/// street is on the ground.
+fn foot_m(site: &Site, node: NodeId) -> f64 {
+    let node_data = site.city.streets.node(node);
+    let ground_m = site.drape.height_m(node_data.at.to_m());
+    if site.drape.is_flat() || node_height_m(site, node) == 0.0 {
+        return ground_m;
+    }
+    ground_m.max(node_data.data.z_m - site.drape.datum_m)
+}
+
+/// A bridge with its ramps: `ends` are the heights of its ends over `feet`.
+fn bridge(
+    site: &Site,
+    mesh: &mut Mesh,
+    line: &[Vec2],
+    street: &Street,
+    ends: [f64; 2],
+    feet: [f64; 2],
+) {
     let total_m = polyline::length(line);
     let top_m = f64::from(street.crossing_level().max(0)) * STOREY_M;
     let height = |at_m: f64| {
         let ramp = |from_m: f64, run_m: f64| from_m + (top_m - from_m).min(run_m * GRADE);
-        ramp(ends[0], at_m).min(ramp(ends[1], total_m - at_m)).max(0.0) + 0.02
+        let over_m = ramp(ends[0], at_m).min(ramp(ends[1], total_m - at_m)).max(0.0) + 0.02;
+        let foot_m = feet[0] + (feet[1] - feet[0]) * (at_m / total_m);
+        (foot_m + over_m).max(site.drape.height_m(polyline::point_at(line, at_m)) + 0.02)
     };
     // Ramps bend: enough points to follow.
     let fine = polyline::resample(line, 6.0);
     let half_m = street.width_m() / 2.0;
-    Ribbon { line: &fine, half_m }.surface(site, mesh, height, color(street.class));
+    Ribbon { line: &fine, half_m }.surface(site, mesh, Lie::Along(&height), color(street.class));
     let deck = Deck { line: &fine, half_m: half_m + 0.3 };
     deck.draw(site, mesh, height);
     if site.options.markings {
-        center_line(site, mesh, &fine, street, |at_m| height(at_m) + MARK_M);
+        let marks = |at_m: f64| height(at_m) + MARK_M;
+        center_line(site, mesh, &fine, street, Lie::Along(&marks));
+    }
+}
+
+/// How a street lies.
+#[derive(Clone, Copy)]
+enum Lie<'a> {
+    /// On the ground, so many metres over it.
+    Ground(f64),
+    /// At a height by metres along its line.
+    Along(&'a dyn Fn(f64) -> f64),
+}
+
+impl Lie<'_> {
+    /// Puts down a piece of a street whose first and last corner are `from_m` along it, the two
+    /// between them `to_m`; or any piece that lies level.
+    fn piece(
+        self,
+        site: &Site,
+        mesh: &mut Mesh,
+        corners: &[Vec2],
+        [from_m, to_m]: [f64; 2],
+        color: Linear,
+    ) {
+        match self {
+            Self::Ground(over_m) => site.drape.lay_convex(mesh, site.axes, corners, over_m, color),
+            Self::Along(height) => {
+                let (first, last) = (height(from_m), height(to_m));
+                let height = |i: usize| if i == 1 || i == 2 { last } else { first };
+                let places =
+                    corners.iter().enumerate().map(|(i, p)| site.axes.place(*p, height(i)));
+                mesh.convex(&places.collect::<Vec<_>>(), color);
+            }
+        }
     }
 }
 
@@ -113,25 +171,23 @@ struct Ribbon<'a> {
 }
 
 impl Ribbon<'_> {
-    /// The top, at a height by metres along the line.
-    fn surface(&self, site: &Site, mesh: &mut Mesh, height: impl Fn(f64) -> f64, color: Linear) {
+    /// The top.
+    fn surface(&self, site: &Site, mesh: &mut Mesh, lie: Lie, color: Linear) {
         let mut at_m = 0.0;
         let last = self.line.len() - 1;
         for (i, w) in self.line.windows(2).enumerate() {
             let along = (w[1] - w[0]).normalize_or_zero();
             let left = along.perp() * self.half_m;
             let end_m = at_m + w[0].distance(w[1]);
-            let (h0, h1) = (height(at_m), height(end_m));
             // Bends are mitred; sharp ones get a disc below.
             let (l0, r0) = self.miter(i, left);
             let (l1, r1) = self.miter(i + 1, left);
-            let corner = |p, h| site.axes.place(p, h);
-            mesh.convex(&[corner(r0, h0), corner(r1, h1), corner(l1, h1), corner(l0, h0)], color);
+            lie.piece(site, mesh, &[r0, r1, l1, l0], [at_m, end_m], color);
             if i == 0 || self.is_sharp(i) {
-                self.disc(site, mesh, w[0], h0, color);
+                lie.piece(site, mesh, &self.disc(w[0]), [at_m; 2], color);
             }
             if i + 1 == last {
-                self.disc(site, mesh, w[1], h1, color);
+                lie.piece(site, mesh, &self.disc(w[1]), [end_m; 2], color);
             }
             at_m = end_m;
         }
@@ -157,11 +213,10 @@ impl Ribbon<'_> {
         (p + offset, p - offset)
     }
 
-    fn disc(&self, site: &Site, mesh: &mut Mesh, center: Vec2, height_m: f64, color: Linear) {
+    /// A round end.
+    fn disc(&self, center: Vec2) -> [Vec2; ROUND] {
         let step = std::f64::consts::TAU / ROUND as f64;
-        let corner = |k: usize| center + trig::unit(step * k as f64) * self.half_m;
-        let corners: Vec<_> = (0..ROUND).map(|k| site.axes.place(corner(k), height_m)).collect();
-        mesh.convex(&corners, color);
+        std::array::from_fn(|k| center + trig::unit(step * k as f64) * self.half_m)
     }
 }
 
@@ -201,13 +256,7 @@ impl Deck<'_> {
 }
 
 /// Dashes of 3 m every 9 m on main streets, away from the junctions.
-fn center_line(
-    site: &Site,
-    mesh: &mut Mesh,
-    line: &[Vec2],
-    street: &Street,
-    height: impl Fn(f64) -> f64,
-) {
+fn center_line(site: &Site, mesh: &mut Mesh, line: &[Vec2], street: &Street, lie: Lie) {
     const DASH_M: f64 = 3.0;
     const PERIOD_M: f64 = 9.0;
     if street.role() != Role::Main || street.width_m() < 6.5 {
@@ -219,10 +268,8 @@ fn center_line(
     while at_m + DASH_M < end_m {
         let (a, b) = (polyline::point_at(line, at_m), polyline::point_at(line, at_m + DASH_M));
         let side = (b - a).normalize_or_zero().perp() * 0.11;
-        let (h0, h1) = (height(at_m), height(at_m + DASH_M));
-        let p = |q: Vec2, h: f64| site.axes.place(q, h);
-        let corners = [p(a - side, h0), p(b - side, h1), p(b + side, h1), p(a + side, h0)];
-        mesh.convex(&corners, linear(MARKING));
+        let corners = [a - side, b - side, b + side, a + side];
+        lie.piece(site, mesh, &corners, [at_m, at_m + DASH_M], linear(MARKING));
         at_m += PERIOD_M;
     }
 }

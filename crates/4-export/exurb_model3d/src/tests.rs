@@ -12,7 +12,7 @@ use glam::DVec3;
 
 use crate::{Options, Scene, View, render_png, to_glb, to_obj};
 
-fn rectangle(x: f64, y: f64, w: f64, h: f64) -> Polygon {
+pub fn rectangle(x: f64, y: f64, w: f64, h: f64) -> Polygon {
     Polygon::rectangle(GridPoint::m(x, y), GridPoint::m(x + w, y + h))
 }
 
@@ -20,21 +20,21 @@ fn polygon(ring: &[(f64, f64)]) -> Polygon {
     Polygon::new(ring.iter().map(|(x, y)| GridPoint::m(*x, *y)).collect(), vec![]).unwrap()
 }
 
-fn building(id: u32, polygon: Polygon, height_m: f64, roof: Roof) -> Building {
+pub fn building(id: u32, polygon: Polygon, height_m: f64, roof: Roof) -> Building {
     let mut building = Building::new(id, polygon, Provenance::of(Origin::Procedural));
     building.height_m = Some(height_m);
     building.roof = Some(roof);
     building
 }
 
-fn city_of(buildings: Vec<Building>) -> City {
+pub fn city_of(buildings: Vec<Building>) -> City {
     let mut city = City::empty(Frame::null_island(), rectangle(-200.0, -200.0, 400.0, 400.0));
     city.buildings = Arc::new(buildings);
     city
 }
 
 /// Streets, a bridge over water, blocks, a park, houses of all roofs, trees and a lamp.
-fn town() -> City {
+pub fn town() -> City {
     let footprint = |i: usize| {
         let (x, y) = (i as f64 % 4.0 * 100.0 - 180.0, (i / 4) as f64 * 100.0 - 180.0);
         rectangle(x, y, 30.0, 12.0)

@@ -61,8 +61,20 @@ pub enum Shape {
     Line(Vec<Px>),
     /// A circle.
     Disc { center: Px, radius_px: f32 },
+    /// Pixels from the page's upper left corner on.
+    Picture(Picture),
     /// Words that begin at `at` on the base line; `height_px` is that of a capital.
     Text { at: Px, height_px: f32, text: String },
+}
+
+/// Pixels, row by row from the top: red, green, blue, opacity.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    pub width: u32,
+    pub height: u32,
+    pub rgba: Arc<Vec<u8>>,
+    /// Its size on the paper.
+    pub size: [f32; 2],
 }
 
 /// One thing on the paper.

@@ -9,7 +9,7 @@
 //! | [`Options`], [`Layer`] | what is shown, how large |
 //! | [`Style`] | colours and widths |
 //! | [`ColorBy`] | what colours tell instead |
-//! | `ground`, `buildings`, `streets`, `features`, `caption` | city → marks, a file per theme |
+//! | `ground`, `relief`, `buildings`, `streets`, `features`, `caption` | city → marks, a file per theme |
 //! | `svg`, `raster` | marks → file |
 //!
 //! ```
@@ -32,6 +32,7 @@ mod ground;
 mod map;
 mod options;
 mod raster;
+mod relief;
 mod sheet;
 mod streets;
 mod style;

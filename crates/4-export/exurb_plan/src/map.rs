@@ -9,7 +9,7 @@ use crate::display::{Display, Group, Mark, Paint, Pen, Shape};
 use crate::options::{Layer, Options};
 use crate::sheet::Sheet;
 use crate::view::View;
-use crate::{buildings, caption, features, ground, streets};
+use crate::{buildings, caption, features, ground, relief, streets};
 
 /// What every theme needs to draw itself.
 pub struct Map<'a> {
@@ -46,6 +46,7 @@ pub fn draw(city: &City, options: &Options) -> Display {
     };
     add(Layer::Blocks, &ground::blocks);
     add(Layer::LandUse, &ground::land_use);
+    add(Layer::Terrain, &relief::draw);
     add(Layer::Water, &ground::water);
     add(Layer::Parcels, &ground::parcels);
     add(Layer::Buildings, &buildings::draw);

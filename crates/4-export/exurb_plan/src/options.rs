@@ -48,6 +48,8 @@ impl Options {
 pub enum Layer {
     Blocks,
     LandUse,
+    /// Shading of the ground.
+    Terrain,
     Water,
     Parcels,
     Buildings,
@@ -59,9 +61,10 @@ pub enum Layer {
 
 impl Layer {
     /// All, from the ground up.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Blocks,
         Self::LandUse,
+        Self::Terrain,
         Self::Water,
         Self::Parcels,
         Self::Buildings,
@@ -75,6 +78,7 @@ impl Layer {
         match self {
             Self::Blocks => "blocks",
             Self::LandUse => "land_use",
+            Self::Terrain => "terrain",
             Self::Water => "water",
             Self::Parcels => "parcels",
             Self::Buildings => "buildings",

@@ -2,12 +2,12 @@
 
 use exurb_city::City;
 use tiny_skia::{
-    FillRule, LineCap, LineJoin, Paint as Ink, Path, PathBuilder, Pixmap, Stroke, StrokeDash,
-    Transform,
+    FillRule, FilterQuality, LineCap, LineJoin, Paint as Ink, Path, PathBuilder, Pixmap,
+    PixmapPaint, Stroke, StrokeDash, Transform,
 };
 
 use crate::color::Color;
-use crate::display::{Cap, Display, Mark, Pen, Px, Shape};
+use crate::display::{Cap, Display, Mark, Pen, Picture, Px, Shape};
 use crate::options::{Error, MAX_PX};
 use crate::{Options, font, map};
 
@@ -41,6 +41,9 @@ pub fn to_png(city: &City, options: &Options) -> Result<Vec<u8>, Error> {
 
 fn draw(pixels: &mut Pixmap, marks: &[Mark]) {
     let Some(first) = marks.first() else { return };
+    if let Shape::Picture(picture) = &first.shape {
+        return lay(pixels, picture);
+    }
     let mut path = PathBuilder::new();
     marks.iter().for_each(|mark| add(&mut path, &mark.shape));
     let Some(path) = path.finish() else { return };
@@ -50,6 +53,21 @@ fn draw(pixels: &mut Pixmap, marks: &[Mark]) {
     if let Some(pen) = first.paint.pen {
         stroke(pixels, &path, &pen);
     }
+}
+
+/// Lays a picture over the page, stretched smoothly.
+fn lay(pixels: &mut Pixmap, picture: &Picture) {
+    let Some(mut map) = Pixmap::new(picture.width, picture.height) else { return };
+    for (to, from) in map.pixels_mut().iter_mut().zip(picture.rgba.chunks_exact(4)) {
+        *to = tiny_skia::ColorU8::from_rgba(from[0], from[1], from[2], from[3]).premultiply();
+    }
+    let scale = |size: f32, px: u32| size / px as f32;
+    let place = Transform::from_scale(
+        scale(picture.size[0], picture.width),
+        scale(picture.size[1], picture.height),
+    );
+    let paint = PixmapPaint { quality: FilterQuality::Bilinear, ..PixmapPaint::default() };
+    pixels.draw_pixmap(0, 0, map.as_ref(), &paint, place, None);
 }
 
 fn stroke(pixels: &mut Pixmap, path: &Path, pen: &Pen) {
@@ -73,6 +91,7 @@ fn add(path: &mut PathBuilder, shape: &Shape) {
             path.close();
         }),
         Shape::Line(line) => add_line(path, line),
+        Shape::Picture(_) => {}
         Shape::Disc { center, radius_px } => path.push_circle(center[0], center[1], *radius_px),
         Shape::Text { at, height_px, text } => {
             font::strokes(text, *at, *height_px).iter().for_each(|line| add_line(path, line));
@@ -114,6 +133,18 @@ fn encode(display: &Display, pixels: &Pixmap) -> Result<Vec<u8>, Error> {
     }
     let mut writer = encoder.write_header()?;
     writer.write_image_data(&rgb)?;
+    writer.finish()?;
+    Ok(out)
+}
+
+/// A picture as PNG with opacity.
+pub fn encode_rgba(picture: &Picture) -> Result<Vec<u8>, png::EncodingError> {
+    let mut out = Vec::new();
+    let mut encoder = png::Encoder::new(&mut out, picture.width, picture.height);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.set_depth(png::BitDepth::Eight);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&picture.rgba)?;
     writer.finish()?;
     Ok(out)
 }

@@ -2,9 +2,10 @@
 
 use std::fmt::Write;
 
+use base64::Engine;
 use exurb_city::City;
 
-use crate::display::{Cap, Display, Group, Mark, Paint, Px, Shape};
+use crate::display::{Cap, Display, Group, Mark, Paint, Picture, Px, Shape};
 use crate::{Options, font, map};
 
 /// The map as SVG: a `<g id="streets">` and so on for every layer, two decimals, attribution in the
@@ -122,6 +123,10 @@ fn write_mark(out: &mut String, mark: &Mark) {
             );
             "circle"
         }
+        Shape::Picture(picture) => {
+            write_picture(out, picture);
+            return;
+        }
         Shape::Text { at, height_px, text } => {
             put!(
                 out,
@@ -140,6 +145,18 @@ fn write_mark(out: &mut String, mark: &Mark) {
         Some(title) => put!(out, "><title>{}</title></{tag}>\n", escaped(title)),
         None => out.push_str("/>\n"),
     }
+}
+
+/// A picture inside the file, as PNG.
+fn write_picture(out: &mut String, picture: &Picture) {
+    let [w, h] = picture.size;
+    let png = crate::raster::encode_rgba(picture).unwrap_or_default();
+    let data = base64::engine::general_purpose::STANDARD.encode(png);
+    put!(
+        out,
+        "<image width=\"{w}\" height=\"{h}\" preserveAspectRatio=\"none\" \
+         href=\"data:image/png;base64,{data}\"/>\n"
+    );
 }
 
 /// A line in hundredths of a pixel, each point relative to the one before as it was written, so

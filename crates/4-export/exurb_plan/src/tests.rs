@@ -203,3 +203,44 @@ fn what_lies_outside_the_target_is_veiled() {
     let [r, g, b] = shade_at(&png, 600, 200);
     assert!(r > 225 && g > 220 && b > 205, "the yellow street is veiled: {r} {g} {b}");
 }
+
+/// Mean brightness of a picture's middle.
+fn brightness(city: &City, layers: &[Layer]) -> f64 {
+    let options =
+        Options { width_px: 200, caption: false, layers: layers.to_vec(), ..Options::default() };
+    let png = to_png(city, &options).unwrap();
+    let mut reader = png::Decoder::new(std::io::Cursor::new(png)).read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut pixels).unwrap();
+    pixels.iter().map(|v| f64::from(*v)).sum::<f64>() / pixels.len() as f64
+}
+
+#[test]
+fn slopes_towards_the_north_west_are_light_and_those_away_dark() {
+    let ground = |east: f32, north: f32| {
+        let mut city = town();
+        let bounds = city.target.bounds().grown(50.0);
+        let height = |p: exurb_geom::Vec2| p.x as f32 * east + p.y as f32 * north;
+        city.lay(exurb_city::Terrain::over(bounds, 10.0, height).unwrap());
+        brightness(&city, &Layer::ALL)
+    };
+    let plain = brightness(&town(), &Layer::ALL);
+    assert!((ground(0.0, 0.0) - plain).abs() < 0.5, "flat ground changes nothing");
+    assert!(ground(0.3, -0.3) > plain + 3.0 && ground(-0.3, 0.3) < plain - 15.0);
+    assert!(ground(-0.9, 0.9) > 60.0, "steep ground is not black");
+}
+
+#[test]
+fn the_terrain_alone_is_coloured_by_height() {
+    let mut city = town();
+    let bounds = city.target.bounds();
+    city.lay(exurb_city::Terrain::over(bounds, 10.0, |p| p.x as f32 / 10.0).unwrap());
+    let options = Options { layers: vec![Layer::Terrain], width_px: 100, ..Options::default() };
+    let svg = to_svg(&city, &options);
+    assert!(
+        svg.contains("<g id=\"terrain\">") && svg.contains("href=\"data:image/png;base64,iVBOR")
+    );
+    assert!(!svg.contains("id=\"streets\""));
+    let mut reader = quick_xml::Reader::from_str(&svg);
+    while !matches!(reader.read_event().unwrap(), quick_xml::events::Event::Eof) {}
+}

@@ -17,10 +17,11 @@ pub enum Format {
     Obj,
     Svg,
     Png,
+    GeoTiff,
 }
 
 /// Every format: name for `--to`, endings, format. Longer endings first.
-const FORMATS: [(&str, &[&str], Format); 9] = [
+const FORMATS: [(&str, &[&str], Format); 10] = [
     ("gpkg", &[".gpkg"], Format::GeoPackage),
     ("geojson", &[".geojson", ".json"], Format::GeoJson),
     ("pbf", &[".osm.pbf", ".pbf"], Format::OsmPbf),
@@ -30,6 +31,7 @@ const FORMATS: [(&str, &[&str], Format); 9] = [
     ("obj", &[".obj"], Format::Obj),
     ("svg", &[".svg"], Format::Svg),
     ("png", &[".png"], Format::Png),
+    ("tif", &[".tif", ".tiff"], Format::GeoTiff),
 ];
 
 impl Format {
@@ -61,6 +63,11 @@ impl Format {
             };
             Problem::usage(message)
         })
+    }
+
+    /// Is it a model in space?
+    pub fn is_model(self) -> bool {
+        matches!(self, Self::Glb | Self::Obj)
     }
 
     /// Is it a picture?

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use exurb_recipe::{Half, Size, Source, Target};
+use exurb_recipe::{Gaps, Half, Size, Source, Target, TargetWord, TerrainBounds, TerrainSource};
 
 use crate::format::Format;
 
@@ -98,6 +98,51 @@ pub struct TargetOptions {
     pub size: Option<Size>,
 }
 
+/// The ground of a city.
+#[derive(Args, Clone, Debug, Default)]
+#[command(next_help_heading = "Terrain")]
+pub struct TerrainOptions {
+    /// Height map under the city: GeoTIFF, SRTM .hgt, ESRI ASCII grid, 16-bit PNG, or a city file
+    #[arg(long, value_name = "DEM")]
+    pub terrain: Option<PathBuf>,
+    /// Everything up to this height is under water, in metres
+    #[arg(long, value_name = "M", requires = "terrain", allow_negative_numbers = true)]
+    pub water_level: Option<f64>,
+    /// Where the height map knows no height of the target: extend the heights around, or refuse
+    /// [default: extend]
+    #[arg(long, value_name = "WHAT", requires = "terrain", value_parser = gaps)]
+    pub terrain_gaps: Option<Gaps>,
+    /// Outer edges of a height map that does not say where it lies: degrees, or `target`
+    #[arg(long, value_name = "W,S,E,N|target", requires = "terrain", allow_hyphen_values = true,
+          value_parser = terrain_bounds)]
+    pub terrain_bounds: Option<TerrainBounds>,
+    /// Heights of black and white of a PNG, in metres
+    #[arg(long, value_name = "LOW,HIGH", requires = "terrain", allow_hyphen_values = true,
+          value_parser = range)]
+    pub terrain_range: Option<[f64; 2]>,
+    /// Coordinate system of a height map that does not name it, as in EPSG:32633
+    #[arg(long, value_name = "CRS", requires = "terrain")]
+    pub terrain_crs: Option<String>,
+    /// Distance of neighbouring heights in the city, in metres [default: that of the height map]
+    #[arg(long, value_name = "M", requires = "terrain", value_parser = cell)]
+    pub terrain_cell: Option<f64>,
+}
+
+impl TerrainOptions {
+    /// The height map as a recipe has it.
+    pub fn source(&self) -> Option<TerrainSource> {
+        self.terrain.clone().map(|file| TerrainSource {
+            file,
+            water_level: self.water_level,
+            gaps: self.terrain_gaps.unwrap_or_default(),
+            cell: self.terrain_cell,
+            bounds: self.terrain_bounds,
+            range: self.terrain_range,
+            crs: self.terrain_crs.clone(),
+        })
+    }
+}
+
 impl PartOptions {
     /// The source with these options.
     pub fn apply(&self, source: Source) -> Source {
@@ -149,6 +194,34 @@ fn bbox(text: &str) -> Result<[f64; 4], String> {
         }
         _ => Err(wrong.to_owned()),
     }
+}
+
+fn gaps(text: &str) -> Result<Gaps, String> {
+    match text {
+        "extend" => Ok(Gaps::Extend),
+        "refuse" => Ok(Gaps::Refuse),
+        _ => Err("expected extend or refuse".to_owned()),
+    }
+}
+
+fn terrain_bounds(text: &str) -> Result<TerrainBounds, String> {
+    match text.trim() {
+        "target" => Ok(TerrainBounds::Word(TargetWord::Target)),
+        text => bbox(text).map(TerrainBounds::Degrees),
+    }
+}
+
+fn range(text: &str) -> Result<[f64; 2], String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    match numbers.ok().and_then(|n| <[f64; 2]>::try_from(n).ok()) {
+        Some([low, high]) if low < high && low.abs().max(high.abs()) <= 20_000.0 => Ok([low, high]),
+        _ => Err("expected the heights of black and white in metres, as in 0,350".to_owned()),
+    }
+}
+
+fn cell(text: &str) -> Result<f64, String> {
+    let wrong = || "expected metres, 0.1 to 1000".to_owned();
+    text.parse().ok().filter(|m| (0.1..=1000.0).contains(m)).ok_or_else(wrong)
 }
 
 /// `FILE` or `FILE=WEIGHT`; a file whose name holds `=` needs its weight said.
@@ -206,6 +279,17 @@ mod tests {
         let options = ExampleOptions { examples, part: PartOptions::default() };
         let names: Vec<String> = options.sources().iter().map(Source::name).collect();
         assert_eq!(names, ["map", "map-2"]);
+    }
+
+    #[test]
+    fn heights_and_edges_are_read_as_people_write_them() {
+        assert_eq!(range("-3, 350.5"), Ok([-3.0, 350.5]));
+        for wrong in ["", "5", "5,5", "9,2", "NaN,1", "0,1e9"] {
+            assert!(range(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(terrain_bounds("target"), Ok(TerrainBounds::Word(TargetWord::Target)));
+        assert_eq!(terrain_bounds("1,2,3,4"), Ok(TerrainBounds::Degrees([1.0, 2.0, 3.0, 4.0])));
+        assert!(terrain_bounds("there").is_err() && cell("0").is_err() && cell("NaN").is_err());
     }
 
     #[test]

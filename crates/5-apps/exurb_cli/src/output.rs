@@ -43,7 +43,14 @@ impl Outputs {
         let one = |(export, format, pending): &(Export, Format, Pending)| {
             run.check()?;
             let others = match &export.layer {
-                Some(name) => write(&layer::alone(city, name), export, *format, pending)?,
+                Some(name) => {
+                    let mut alone = layer::alone(city, name);
+                    if format.is_model() || picture::is_perspective(export) {
+                        // A layer stands where it stands in the whole.
+                        alone.terrain.clone_from(&city.terrain);
+                    }
+                    write(&alone, export, *format, pending)?
+                }
                 None => write(city, export, *format, pending)?,
             };
             run.progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
@@ -125,6 +132,11 @@ fn write(
         Format::Svg => {
             pending.write(exurb_plan::to_svg(city, &picture::map(export)?).as_bytes())?
         }
+        Format::GeoTiff => {
+            let tif = exurb_terrain::to_geotiff(city);
+            pending.write(&tif.map_err(|e| pending.problem(&e.to_string()))?)?;
+        }
+        Format::Png if picture::is_height_map(export) => return write_height_map(city, pending),
         Format::Png if picture::is_perspective(export) => {
             let png = exurb_model3d::render_png(city, &model, &picture::view(export));
             pending.write(&png.map_err(|e| pending.problem(&e.to_string()))?)?;
@@ -135,6 +147,20 @@ fn write(
         }
     }
     Ok(Vec::new())
+}
+
+/// A height map, and beside it what its values mean and where it lies.
+fn write_height_map(city: &City, pending: &Pending) -> Result<Vec<Pending>, Problem> {
+    let map = exurb_terrain::to_png(city).map_err(|e| pending.problem(&e.to_string()))?;
+    pending.write(&map.png)?;
+    let beside = [("json", map.json), ("pgw", map.world), ("prj", map.projection)];
+    let mut others = Vec::new();
+    for (ending, text) in beside {
+        let other = Pending::new(&pending.path().with_extension(ending))?;
+        other.write(text.as_bytes())?;
+        others.push(other);
+    }
+    Ok(others)
 }
 
 /// An OBJ, and beside it its materials and textures.

@@ -24,6 +24,11 @@ pub fn is_perspective(export: &Export) -> bool {
     export.view.as_deref() == Some("3d")
 }
 
+/// Is it the terrain's height map, not a picture of it?
+pub fn is_height_map(export: &Export) -> bool {
+    export.layer.as_deref() == Some(layer::TERRAIN) && export.view.is_none()
+}
+
 /// Is there all that the options ask for?
 pub fn check(export: &Export, format: Format) -> Result<(), Problem> {
     let name = export.file.display();

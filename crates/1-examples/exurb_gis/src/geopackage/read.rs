@@ -2,13 +2,14 @@
 
 use std::borrow::Cow;
 use std::path::Path;
+use std::sync::Arc;
 
 use exurb_city::{ImportOptions, Imported, Metadata};
 use exurb_geom::{Crs, Frame, GridPoint, Vec2};
 use rusqlite::types::ValueRef;
 use rusqlite::{Connection, OpenFlags, OptionalExtension};
 
-use super::schema;
+use super::{schema, terrain};
 use crate::Error;
 use crate::assembly::Assembly;
 use crate::gathering::Gathering;
@@ -50,10 +51,13 @@ fn distrust(db: &Connection) -> rusqlite::Result<()> {
 
 /// The frame and the metadata of a city of our own.
 pub(super) fn metadata_of(db: &Connection) -> Option<(Frame, Metadata)> {
-    metadata::read(|key: &str| {
-        let sql = format!("SELECT value FROM {} WHERE key = ?", schema::METADATA_TABLE);
-        db.query_row(&sql, [key], |row| row.get(0)).optional().ok().flatten()
-    })
+    metadata::read(|key: &str| entry_of(db, key))
+}
+
+/// What travels with a city of our own under a key.
+fn entry_of(db: &Connection, key: &str) -> Option<String> {
+    let sql = format!("SELECT value FROM {} WHERE key = ?", schema::METADATA_TABLE);
+    db.query_row(&sql, [key], |row| row.get(0)).optional().ok().flatten()
 }
 
 /// Reads an open database.
@@ -68,6 +72,9 @@ pub(crate) fn read_database(
     match metadata_of(db) {
         Some((frame, metadata)) => {
             let mut assembly = Assembly::new(file.to_owned(), frame, metadata);
+            let level = entry_of(db, metadata::WATER_LEVEL).and_then(|level| level.parse().ok());
+            let ground = terrain::read(db, file)?;
+            assembly.terrain = ground.map(|ground| Arc::new(ground.with_water_level(level)));
             read_own(db, file, &mut assembly)?;
             assembly.finish(options)
         }

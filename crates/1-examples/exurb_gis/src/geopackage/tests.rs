@@ -1,7 +1,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use exurb_city::{City, ImportOptions, Role};
+use exurb_city::{City, ImportOptions, Role, Terrain};
 use exurb_geom::GridPoint;
 use proptest::prelude::*;
 use rusqlite::Connection;
@@ -36,7 +36,10 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
-    fn what_is_written_is_read_back(city in any_city()) {
+    fn what_is_written_is_read_back(
+        mut city in any_city(), ground in prop::option::of(sample::terrain()),
+    ) {
+        city.terrain = ground.map(Arc::new);
         let folder = tempfile::tempdir().unwrap();
         let (path, bytes) = written(&city, folder.path(), "a.gpkg");
         let back = read(&path);
@@ -48,7 +51,9 @@ proptest! {
 #[test]
 fn the_files_answer_to_the_standard() {
     let folder = tempfile::tempdir().unwrap();
-    let (path, _) = written(&sample::grid_city(3), folder.path(), "a.gpkg");
+    let mut city = sample::grid_city(3);
+    city.lay(Terrain::over(city.target.bounds(), 10.0, |p| p.y as f32).unwrap());
+    let (path, _) = written(&city, folder.path(), "a.gpkg");
     let db = Connection::open(path).unwrap();
     let number = |sql: &str| db.query_row(sql, [], |row| row.get::<_, i64>(0)).unwrap();
     assert_eq!(number("PRAGMA application_id"), 0x4750_4B47);
@@ -135,6 +140,38 @@ fn a_part_of_a_city_file_can_be_read() {
     let part = read_geopackage(&path, &options).unwrap().city;
     assert!(part.area_km2() < 0.05);
     assert!((16..40).contains(&part.buildings.len()), "{}", part.buildings.len());
+}
+
+#[test]
+fn a_part_of_a_city_keeps_its_ground() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut city = sample::grid_city(20);
+    let bounds = city.target.bounds().grown(300.0);
+    let ramp = Terrain::over(bounds, 20.0, |p| p.x as f32 / 10.0).unwrap();
+    city.lay(ramp.with_water_level(Some(-3.0)));
+    let (path, _) = written(&city, folder.path(), "a.gpkg");
+    let corner = |x: f64, y: f64| city.frame.unproject(exurb_geom::Vec2::new(x, y));
+    let bbox = Some([corner(100.0, 100.0), corner(400.0, 400.0)]);
+    let options = ImportOptions { bbox, ..ImportOptions::default() };
+    let part = read_geopackage(&path, &options).unwrap().city;
+    let ground = part.terrain.expect("a terrain");
+    assert!(ground.columns() < 40 && ground.water_level_m() == Some(-3.0));
+    let place = exurb_geom::Vec2::new(217.0, 333.0);
+    assert!((ground.height_m(place).unwrap() - 21.7).abs() < 1e-3);
+    let off = |z: f64, p: GridPoint| (z - p.to_m().x / 10.0).abs();
+    assert!(part.streets.nodes().all(|(_, n)| off(n.data.z_m, n.at) < 1e-3));
+}
+
+#[test]
+fn a_broken_tile_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut city = sample::grid_city(2);
+    city.lay(Terrain::over(city.target.bounds(), 20.0, |_| 7.0).unwrap());
+    let (path, _) = written(&city, folder.path(), "a.gpkg");
+    let sql = "UPDATE terrain SET tile_data = x'49492a00'";
+    without_triggers(&path).execute(sql, []).unwrap();
+    let error = read_geopackage(&path, &ImportOptions::default()).unwrap_err().to_string();
+    assert!(error.contains("layer `terrain`, tile 0 0"), "{error}");
 }
 
 #[test]

@@ -7,7 +7,7 @@ use exurb_geom::{Bounds, Polygon};
 use rusqlite::types::{ToSqlOutput, ValueRef};
 use rusqlite::{Connection, ToSql, params};
 
-use super::schema;
+use super::{schema, terrain};
 use crate::Error;
 use crate::beside::Beside;
 use crate::layers::{self, GeometryType, Kind, Layer, Streets, TargetRow};
@@ -21,7 +21,7 @@ use crate::wkb::{self, Shape};
 ///
 /// Layers `streets`, `intersections`, `blocks`, `parcels`, `buildings`, `features`, `water`,
 /// `land_use` and `target`, each with an R-tree, in the city's own transverse Mercator; the table
-/// `exurb_metadata` holds what travels with the city. Equal cities give equal files, byte for byte.
+/// `exurb_metadata` holds what travels with the city; a terrain is the raster `terrain`. Equal cities give equal files, byte for byte.
 /// An existing file is replaced when the new one is whole. O(n log n), for the R-trees.
 pub fn write_geopackage(city: &City, path: &Path) -> Result<(), Error> {
     write_geopackage_streets(city, Streets::ALL, path)
@@ -31,7 +31,11 @@ pub fn write_geopackage(city: &City, path: &Path) -> Result<(), Error> {
 pub fn write_geopackage_streets(city: &City, streets: Streets, path: &Path) -> Result<(), Error> {
     let (beside, _) = Beside::create(path)?;
     let numbered = numbered(city);
-    write_database(&numbered, beside.path(), |db| write_layers(db, &numbered, streets))
+    let write = |db: &Connection| {
+        write_layers(db, &numbered, streets)?;
+        numbered.terrain.as_ref().map_or(Ok(()), |ground| terrain::write(db, ground))
+    };
+    write_database(&numbered, beside.path(), write)
         .map_err(|source| Error::WriteDatabase { file: path.display().to_string(), source })?;
     forget_journals(path);
     beside.finish()
@@ -68,7 +72,11 @@ fn write_database(
     schema::prepare(&db)?;
     let transaction = db.transaction()?;
     schema::create_tables(&transaction, &city.frame)?;
-    schema::write_metadata(&transaction, &metadata::entries(city))?;
+    let mut entries = metadata::entries(city).to_vec();
+    if let Some(level) = city.terrain.as_ref().and_then(|terrain| terrain.water_level_m()) {
+        entries.push((metadata::WATER_LEVEL, level.to_string()));
+    }
+    schema::write_metadata(&transaction, &entries)?;
     layers(&transaction)?;
     transaction.commit()?;
     db.close().map_err(|(_, error)| error)

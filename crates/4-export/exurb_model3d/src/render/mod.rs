@@ -97,7 +97,7 @@ fn picture(city: &City, scene: &Scene, view: &View) -> Vec<u8> {
     let camera = Camera::over_city(city, scene, view, samples);
     let light = Light::of(&surfaces, view);
     let bands = Bands::of(&surfaces, &camera, samples as usize * ROWS_PER_BAND);
-    let shader = Shader::new(&surfaces, &camera, &light);
+    let shader = Shader::new(scene, &surfaces, &camera, &light);
     let screen = Screen::new();
     let rows: Vec<Vec<u8>> = (0..bands.count())
         .into_par_iter()

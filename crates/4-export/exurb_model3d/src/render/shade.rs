@@ -9,7 +9,7 @@ use super::raster::NOTHING;
 use super::surface::Surfaces;
 use super::texture::Texture;
 use crate::palette::{self, to_srgb};
-use crate::scene::Material;
+use crate::scene::{Material, Scene};
 
 const SUN: Vec3 = Vec3::new(2.75, 2.5, 2.1);
 const SKY: Vec3 = Vec3::new(0.62, 0.74, 0.95);
@@ -30,10 +30,20 @@ pub struct Shader<'a> {
     ground: Vec3,
     /// Distance at which haze takes half.
     haze_m: f32,
+    /// Height of the open country around.
+    plane_m: f32,
+    /// Is it water?
+    sea_around: bool,
 }
 
 impl<'a> Shader<'a> {
-    pub fn new(surfaces: &'a Surfaces<'a>, camera: &'a Camera, light: &'a Light) -> Self {
+    /// A shader for the surfaces of `scene`.
+    pub fn new(
+        scene: &Scene,
+        surfaces: &'a Surfaces<'a>,
+        camera: &'a Camera,
+        light: &'a Light,
+    ) -> Self {
         let [r, g, b, _] = palette::linear(palette::GROUND).map(|v| f32::from(v) / 255.0);
         let size_m = (surfaces.high - surfaces.low).length().max(500.0);
         let to_middle_m = camera.eye.length();
@@ -45,6 +55,8 @@ impl<'a> Shader<'a> {
             glass: Texture::of(Material::Glass),
             ground: Vec3::new(r, g, b),
             haze_m: (to_middle_m + size_m) * 1.8,
+            plane_m: scene.lowest_m as f32,
+            sea_around: scene.by_the_sea,
         }
     }
 
@@ -107,8 +119,13 @@ impl<'a> Shader<'a> {
         if ray.y >= -1e-4 {
             return sky(ray.normalize());
         }
-        let distance = (self.camera.eye.y + 0.25) / -ray.y;
+        let distance = (self.camera.eye.y - self.plane_m) / -ray.y;
         let at = self.camera.eye + ray * distance;
+        if self.sea_around {
+            let [r, g, b, _] = palette::linear(palette::WATER).map(|v| f32::from(v) / 255.0);
+            let lit = self.water(Vec3::new(r, g, b), at, ray);
+            return self.hazy(lit, distance * ray.length(), ray);
+        }
         let outside = (self.surfaces.low - at).max(at - self.surfaces.high).max(Vec3::ZERO);
         let ground = meadow::uneven(self.ground, at, self.camera.sample_m(distance));
         let ground = meadow::wooded(ground, at, outside.x.max(outside.z));

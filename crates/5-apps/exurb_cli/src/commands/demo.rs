@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 use exurb_recipe::{Export, Recipe, Registry, Source, Step, builtin};
 
-use crate::options::{ExampleOptions, RunOptions, SeedOptions, TargetOptions};
+use crate::options::{ExampleOptions, RunOptions, SeedOptions, TargetOptions, TerrainOptions};
 use crate::output::{Folder, Outputs};
 use crate::pending::Pending;
 use crate::problem::Problem;
@@ -25,6 +25,8 @@ struct Options {
     examples: ExampleOptions,
     #[command(flatten)]
     target: TargetOptions,
+    #[command(flatten)]
+    terrain: TerrainOptions,
     #[command(flatten)]
     seed: SeedOptions,
     #[command(flatten)]
@@ -109,6 +111,7 @@ fn recipe(options: &Options) -> Recipe {
     Recipe {
         seed: options.seed.seed,
         target: Some(options.target.target()),
+        terrain: options.terrain.source(),
         examples,
         steps: STEPS.into_iter().map(Step::new).collect(),
         exports,

@@ -16,8 +16,8 @@ struct Options {
     city: PathBuf,
     #[command(flatten)]
     output: OutputOptions,
-    /// Write this layer alone: streets, intersections, blocks, parcels, buildings, features, water
-    /// or land_use
+    /// Write this layer alone: streets, intersections, blocks, parcels, buildings, features, water,
+    /// land_use or terrain (.tif or .png: a height map)
     #[arg(long, value_name = "LAYER")]
     layer: Option<String>,
     #[command(flatten)]

@@ -8,7 +8,7 @@ use exurb_city::{City, Imported};
 use exurb_operation::Run;
 use exurb_recipe::{Export, Seconds, Source};
 
-use crate::options::{DryOptions, OutputOptions, PartOptions, RunOptions};
+use crate::options::{DryOptions, OutputOptions, PartOptions, RunOptions, TerrainOptions};
 use crate::output::Outputs;
 use crate::problem::Problem;
 use crate::{job, summary};
@@ -23,6 +23,8 @@ struct Options {
     output: OutputOptions,
     #[command(flatten)]
     part: PartOptions,
+    #[command(flatten)]
+    terrain: TerrainOptions,
     #[command(flatten)]
     dry: DryOptions,
     #[command(flatten)]
@@ -54,13 +56,17 @@ pub fn run(matches: &ArgMatches) -> Result<(), Problem> {
 
 fn read(options: &Options, run: &Run) -> Result<City, Problem> {
     if let [input] = &options.inputs[..] {
-        let source = options.part.apply(Source::new(input));
+        let terrain = options.terrain.source();
+        let source = Source { terrain, ..options.part.apply(Source::new(input)) };
         return Ok(exurb_recipe::read_source(&source, Path::new(""), run)?);
     }
     run.phase("reading");
     let taken = options.part.apply(Source::new("")).import_options();
-    let Imported { city, warnings } = exurb_recipe::open_all(&options.inputs, &taken)?;
+    let Imported { mut city, warnings } = exurb_recipe::open_all(&options.inputs, &taken)?;
     warnings.into_iter().for_each(|warning| run.warn(warning));
+    if let Some(source) = options.terrain.source() {
+        exurb_recipe::lay_terrain(&mut city, &source, Path::new(""), run)?;
+    }
     run.check()?;
     Ok(city)
 }

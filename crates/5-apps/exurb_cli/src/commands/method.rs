@@ -7,7 +7,7 @@ use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use exurb_operation::{AnyOperation, Card, Run};
 use exurb_recipe::{Export, Inputs, Recipe, Registry, Source, Step, Within, needs_city};
 
-use crate::options::{ExampleOptions, RunOptions, SeedOptions, TargetOptions};
+use crate::options::{ExampleOptions, RunOptions, SeedOptions, TargetOptions, TerrainOptions};
 use crate::output::Outputs;
 use crate::problem::Problem;
 use crate::{flags, job, summary};
@@ -117,6 +117,7 @@ impl Method<'_> {
         } else {
             InsideOptions::augment_args(TargetOptions::augment_args(command))
         };
+        command = TerrainOptions::augment_args(command);
         // The shared options bring their own doc lines, which must not stand for the method's.
         RunOptions::augment_args(SeedOptions::augment_args(command)).about(self.about.clone())
     }
@@ -136,7 +137,8 @@ impl Method<'_> {
     fn recipe(&self, matches: &ArgMatches, registry: &Registry) -> Result<Recipe, Problem> {
         let SeedOptions { seed, .. } = given(matches)?;
         let examples = given::<ExampleOptions>(matches)?.sources();
-        let mut recipe = Recipe { seed, examples, ..Recipe::default() };
+        let terrain = given::<TerrainOptions>(matches)?.source();
+        let mut recipe = Recipe { seed, examples, terrain, ..Recipe::default() };
         let mut scope = Within::All;
         if self.needs_city() {
             recipe.city = matches.get_one::<PathBuf>("city").map(Source::new);

@@ -5,6 +5,7 @@ mod demo;
 mod files;
 mod recipes;
 mod synthesis;
+mod terrain;
 mod usage;
 
 use std::path::Path;
