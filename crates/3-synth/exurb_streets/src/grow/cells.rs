@@ -40,7 +40,8 @@ pub struct Grown {
 
 /// Splits main streets where local ones may end later.
 pub fn make_berths(net: &mut Network) {
-    let edges: Vec<EdgeId> = net.graph.edges().map(|(id, _)| id).collect();
+    let edges = net.graph.edges().filter(|(_, e)| e.data.standing != Standing::Bridge);
+    let edges: Vec<EdgeId> = edges.map(|(id, _)| id).collect();
     for id in edges {
         let line = net.graph.edge(id).line_m();
         let total = polyline::length(&line);
@@ -80,7 +81,8 @@ pub fn grow(
             let rng = cell_stream(face, run);
             let (net, seeds) = open_cell(main, &graph, &kinds, &at, face, plan, rng.clone());
             let claims = claims.window(&face.polygon);
-            let mut growth = Growth::new(net, plan, false, &face.polygon, params, claims, rng);
+            let mut growth =
+                Growth::new(net, plan, false, &face.polygon, &ground.relief, params, claims, rng);
             growth.queue.extend(seeds);
             enter(&mut growth, ground);
             if main.graph.edge_count() == 0 {

@@ -49,6 +49,7 @@ pub fn fill(growth: &mut Growth, empty_m: f64, run: &Run) -> Result<(), Error> {
         let mut grew = false;
         for place in places(area, empty_m) {
             if growth.claims.owner(place).is_some()
+                || !growth.relief.bears(place)
                 || growth.net.edge_near(place, empty_m).is_some()
                 || area.boundary_distance_m(place) < empty_m * 0.3
             {

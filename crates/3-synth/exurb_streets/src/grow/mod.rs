@@ -19,6 +19,7 @@
 //!
 //! Units: metres, radians. Complexity: O(streets grown · streets nearby). Same seed, same streets.
 
+mod bridges;
 mod cells;
 mod claims;
 mod detect;
@@ -40,6 +41,7 @@ mod placing;
 mod plan;
 mod prepare;
 mod procedural;
+mod relief;
 mod seams;
 mod starts;
 mod synthesize;
@@ -106,15 +108,21 @@ impl Operation for Grow {
         run: &Run,
     ) -> Result<Edit, Failure> {
         let ground = match scope {
-            Scope::Inside(polygon) => Ground::inside(city, polygon),
-            Scope::All | Scope::Blocks(_) => {
-                Ground::open(city, &city.target, synthesize::margin_m(&learned.vocabularies))
-            }
+            Scope::Inside(polygon) => Ground::inside(city, polygon, params),
+            Scope::All | Scope::Blocks(_) => Ground::open(
+                city,
+                &city.target,
+                synthesize::margin_m(&learned.vocabularies),
+                params,
+            ),
         };
         let plan = learned.plan(city, &ground, params, run).map_err(failure)?;
         let streets = synthesize(&ground, &plan, params, run).map_err(failure)?;
         let mut streets = lawful(city, &ground, streets, run);
         assign_levels(&mut streets, &Hierarchy::default());
+        if let Some(terrain) = &city.terrain {
+            exurb_city::elevate(&mut streets, terrain);
+        }
         run.phase("blocks");
         if ground.around.is_some() {
             ground.restore_levels(&mut streets);
@@ -200,8 +208,10 @@ fn failure(error: Error) -> Failure {
     let (operation, message) = (Grow::CARD.name(), error.to_string());
     match error {
         Error::NoStreets(_) | Error::NoPatch(_) => Failure::Example { operation, message },
-        Error::Params(_) | Error::StartOutside(_) => Failure::Params { operation, message },
-        Error::Nothing { .. } => Failure::City { operation, message },
+        Error::Params(_) | Error::StartOutside(_) | Error::StartInWater(_) => {
+            Failure::Params { operation, message }
+        }
+        Error::Nothing { .. } | Error::NoLand => Failure::City { operation, message },
         Error::Cancelled => Failure::Cancelled,
     }
 }

@@ -55,6 +55,12 @@ pub struct Params {
     /// Largest radius of a circle of local streets that stays together as one patch.
     #[schemars(range(min = 0.0, max = 1000.0), extend("x-unit" = "m"))]
     pub local_circle: f64,
+    /// Streets are no steeper than this: their rise over run.
+    #[schemars(range(min = 0.0, max = 2.0))]
+    pub grade: f64,
+    /// No street lies on ground steeper than this: its rise over run.
+    #[schemars(range(min = 0.0, max = 10.0))]
+    pub slope: f64,
     /// Dead ends that the example does not have there are removed.
     pub remove_dangling: bool,
 }
@@ -77,6 +83,8 @@ impl Default for Params {
             keep: Vec::new(),
             main_circle: 500.0,  // the authors' program
             local_circle: 100.0, // the authors' program
+            grade: 0.2,
+            slope: 0.6, // the authors' program: 36°, 0.73
             remove_dangling: true,
         }
     }

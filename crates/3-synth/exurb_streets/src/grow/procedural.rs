@@ -107,6 +107,7 @@ pub fn step(growth: &mut Growth, node: NodeId, direction: Vec2) {
         positive_normal(growth, statistics.curvature_mean, statistics.curvature_variance);
     // A street that turns by more than a right angle in one step is a loop, not a street.
     let turn = (curvature * length_m).min(FRAC_PI_2);
+    let direction = growth.relief.bent(at, direction, length_m);
     let side = if growth.rng.random_bool(0.5) { 1.0 } else { -1.0 };
     let mut line = vec![at];
     let mut heading = direction;

@@ -17,7 +17,7 @@ use super::network::{Coherent, Network, Piece, Standing, Vertex};
 use super::params::Params;
 use super::placing;
 use super::plan::{Plan, Start};
-use super::{fill, finish, unreached};
+use super::{bridges, fill, finish, unreached};
 
 /// Growth goes on beyond the target by a large block of the example, so that blocks at its edge close
 /// and its edge looks like its middle; by no more and no less than this.
@@ -76,13 +76,15 @@ fn grow_main(
     let first = plan.example_at(area.interior_point());
     let mut net = Network::new(plan.statistics(first, true).length_mean_m);
     ground.furnish(&mut net);
-    let claims = Claims::new(area);
-    let mut growth = Growth::new(net, plan, true, area, params, claims, run.stream(0));
+    let relief = &ground.relief;
+    let claims = Claims::new(area, |p| relief.is_wet(p));
+    let mut growth = Growth::new(net, plan, true, area, relief, params, claims, run.stream(0));
     ground.begin_main(&mut growth);
     for start in &plan.starts {
         begin(&mut growth, start);
     }
     growth.run(run)?;
+    bridges::lay(&mut growth, run)?;
     unreached::lay(&mut growth, run)?;
     if growth.net.graph.edge_count() > 0 {
         fill::fill(&mut growth, plan.examples[first].main.empty_m, run)?;
@@ -123,7 +125,10 @@ fn remove_open_ends(net: &mut Network, plan: &Plan) {
     while let Some(node) = open.pop() {
         let Some(n) = net.graph.get_node(node) else { continue };
         let is_open = net.graph.degree(node) == 1
-            && net.graph.edge(net.graph.darts(node)[0].edge()).data.standing == Standing::Grown;
+            && matches!(
+                net.graph.edge(net.graph.darts(node)[0].edge()).data.standing,
+                Standing::Grown | Standing::Bridge
+            );
         if n.data.dead_end || n.data.outside || !is_open {
             continue;
         }

@@ -1,0 +1,116 @@
+//! What the ground lets streets do: nothing under water, nothing too steep (Nishida et al. 2015,
+//! sections 4.3.2 and 4.3.4).
+//!
+//! The paper gives no limits; its program allows a spread of 0.3 rad within a patch and ground of 36°.
+//! Here a street has a limit for its own grade and one for the ground under it, both parameters.
+
+use exurb_city::{City, Land};
+use exurb_geom::{Vec2, polyline, trig};
+
+use super::params::Params;
+
+/// Places along a street that are looked at, in metres.
+const STEP_M: f64 = 8.0;
+/// The grade of a street is that over this length, in metres.
+const GRADE_OVER_M: f64 = 32.0;
+/// Streets keep this far from water to both sides, in metres.
+const SHORE_M: f64 = 6.0;
+/// A street that would be too steep turns towards the contour in steps of this, in radians.
+const TURN_RAD: f64 = 0.15;
+
+/// The ground that streets grow on.
+#[derive(Debug)]
+pub struct Relief {
+    land: Option<Land>,
+    most_slope: f64,
+    most_grade: f64,
+}
+
+/// What the ground says to a street.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// It may lie there.
+    Fine,
+    /// It runs into water.
+    Wet,
+    /// It is too steep, or the ground under it is.
+    Steep,
+}
+
+impl Relief {
+    /// The ground of a city.
+    pub fn of(city: &City, params: &Params) -> Self {
+        let land = Land::of(city);
+        let land = (land.has_terrain() || land.has_water()).then_some(land);
+        Self { land, most_slope: params.slope, most_grade: params.grade }
+    }
+
+    /// Is there any water?
+    pub fn has_water(&self) -> bool {
+        self.land.as_ref().is_some_and(Land::has_water)
+    }
+
+    /// Does `p` lie in water?
+    pub fn is_wet(&self, p: Vec2) -> bool {
+        self.land.as_ref().is_some_and(|land| land.is_wet(p))
+    }
+
+    /// May streets lie at `p`?
+    pub fn bears(&self, p: Vec2) -> bool {
+        self.land.as_ref().is_none_or(|land| !land.is_wet(p) && land.slope(p) <= self.most_slope)
+    }
+
+    /// Height in metres; 0 on level ground.
+    pub fn height_m(&self, p: Vec2) -> f64 {
+        self.land.as_ref().map_or(0.0, |land| land.height_m(p))
+    }
+
+    /// May a street lie along `line`? O(length).
+    pub fn verdict(&self, line: &[Vec2]) -> Verdict {
+        let Some(land) = &self.land else { return Verdict::Fine };
+        let total = polyline::length(line);
+        let count = (total / STEP_M).ceil().max(1.0) as usize;
+        let places: Vec<Vec2> = (0..=count)
+            .map(|i| polyline::point_at(line, total * i as f64 / count as f64))
+            .collect();
+        let is_wet = |i: usize| {
+            let (p, before) = (places[i], places[i.max(1) - 1]);
+            let aside = (places[i.max(1)] - before).perp().normalize_or_zero() * SHORE_M;
+            [Vec2::ZERO, aside, -aside].iter().any(|d| land.is_wet(p + *d))
+        };
+        if land.has_water() && (0..=count).any(is_wet) {
+            return Verdict::Wet;
+        }
+        if !land.has_terrain() {
+            return Verdict::Fine;
+        }
+        let heights: Vec<f64> = places.iter().map(|p| land.height_m(*p)).collect();
+        let steps = ((GRADE_OVER_M / STEP_M) as usize).min(count);
+        let step_m = total / count as f64 * steps as f64;
+        let too_steep = heights
+            .windows(steps + 1)
+            .any(|w| (w[steps] - w[0]).abs() > self.most_grade * step_m.max(GRADE_OVER_M / 2.0))
+            || places.iter().any(|p| land.slope(*p) > self.most_slope);
+        if too_steep { Verdict::Steep } else { Verdict::Fine }
+    }
+
+    /// The direction nearest to `heading` in which a street of that length is not too steep: it turns
+    /// towards the contour as far as it must (section 4.3.4).
+    pub fn bent(&self, at: Vec2, heading: Vec2, length_m: f64) -> Vec2 {
+        let Some(land) = self.land.as_ref().filter(|land| land.has_terrain()) else {
+            return heading;
+        };
+        let grade = |d: Vec2| {
+            (land.height_m(at + d * length_m) - land.height_m(at)).abs() / length_m.max(1.0)
+        };
+        // Some room below the limit, since the ground is not even.
+        let fits = |d: &Vec2| grade(*d) <= 0.8 * self.most_grade;
+        let turned = (0..=10).flat_map(|k| {
+            let turn = f64::from(k) * TURN_RAD;
+            [trig::rotate(heading, turn), trig::rotate(heading, -turn)]
+        });
+        let turned: Vec<Vec2> = turned.collect();
+        let gentlest = || turned.iter().copied().min_by(|a, b| grade(*a).total_cmp(&grade(*b)));
+        turned.iter().copied().find(|d| fits(d)).or_else(gentlest).unwrap_or(heading)
+    }
+}
