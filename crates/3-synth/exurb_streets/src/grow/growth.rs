@@ -309,7 +309,7 @@ impl<'a> Growth<'a> {
                 self.note_ford(node, &probe.line, &piece.street);
                 return None;
             }
-            Verdict::Steep => return None,
+            Verdict::Steep => return self.lay_bent(node, line, wish, &piece.street),
         }
         let is_whole = probe.landing == Landing::Free && probe.kept > 0.999;
         let landed = polyline::length(&probe.line);
@@ -334,6 +334,37 @@ impl<'a> Growth<'a> {
             }
         }
         Some(Laid { to, is_whole })
+    }
+
+    /// Lays a street that would be too steep along the slope instead. Where it ends nothing of the
+    /// example follows, so another patch may begin there.
+    fn lay_bent(
+        &mut self,
+        node: NodeId,
+        line: &[Vec2],
+        wish: Wish,
+        street: &Street,
+    ) -> Option<Laid> {
+        if wish.to.is_some() || wish.dead_end {
+            return None;
+        }
+        let line = self.relief.along_slope(line);
+        if !self.keeps_spacing(node, &line) {
+            return None;
+        }
+        let probe = self.net.probe(node, &line, Wish::free(0))?;
+        if self.relief.verdict(&probe.line) != Verdict::Fine {
+            return None;
+        }
+        let is_free = probe.landing == Landing::Free;
+        let piece = self.made(street, Origin::Procedural);
+        let (to, _) = self.net.commit(node, probe, piece, Vertex::default())?;
+        if !self.area.contains(self.net.graph.node(to).at) {
+            self.net.graph.node_mut(to).data.outside = true;
+        } else if is_free {
+            self.frontier.push_back(Open::Node(to));
+        }
+        Some(Laid { to, is_whole: false })
     }
 
     /// A main street that comes to water may cross it later.

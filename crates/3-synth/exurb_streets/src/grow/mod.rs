@@ -120,9 +120,6 @@ impl Operation for Grow {
         let streets = synthesize(&ground, &plan, params, run).map_err(failure)?;
         let mut streets = lawful(city, &ground, streets, run);
         assign_levels(&mut streets, &Hierarchy::default());
-        if let Some(terrain) = &city.terrain {
-            exurb_city::elevate(&mut streets, terrain);
-        }
         run.phase("blocks");
         if ground.around.is_some() {
             ground.restore_levels(&mut streets);

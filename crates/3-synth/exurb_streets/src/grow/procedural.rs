@@ -10,6 +10,7 @@ use rand_distr::{Distribution, Normal};
 
 use super::growth::Growth;
 use super::network::{Landing, Standing, Vertex, Wish};
+use super::relief::Verdict;
 
 /// Pieces of a procedural street.
 const STEPS: usize = 5;
@@ -107,7 +108,6 @@ pub fn step(growth: &mut Growth, node: NodeId, direction: Vec2) {
         positive_normal(growth, statistics.curvature_mean, statistics.curvature_variance);
     // A street that turns by more than a right angle in one step is a loop, not a street.
     let turn = (curvature * length_m).min(FRAC_PI_2);
-    let direction = growth.relief.bent(at, direction, length_m);
     let side = if growth.rng.random_bool(0.5) { 1.0 } else { -1.0 };
     let mut line = vec![at];
     let mut heading = direction;
@@ -118,6 +118,10 @@ pub fn step(growth: &mut Growth, node: NodeId, direction: Vec2) {
     if turn < 0.02 {
         line = vec![at, at + direction * length_m];
     }
+    let line = match growth.relief.verdict(&line) {
+        Verdict::Steep => growth.relief.along_slope(&line),
+        Verdict::Fine | Verdict::Wet => line,
+    };
     let street = street_like(growth, node);
     let piece = growth.made(&street, Origin::Procedural);
     if let Some(laid) = growth.lay(node, &line, Wish::free(0), piece, Vertex::default(), &[])

@@ -15,6 +15,8 @@ const STEP_M: f64 = 8.0;
 const GRADE_OVER_M: f64 = 32.0;
 /// Streets keep this far from water to both sides, in metres.
 const SHORE_M: f64 = 6.0;
+/// Steps of a street that is bent, in metres.
+const BENT_STEP_M: f64 = 24.0;
 /// A street that would be too steep turns towards the contour in steps of this, in radians.
 const TURN_RAD: f64 = 0.15;
 
@@ -112,5 +114,25 @@ impl Relief {
         let turned: Vec<Vec2> = turned.collect();
         let gentlest = || turned.iter().copied().min_by(|a, b| grade(*a).total_cmp(&grade(*b)));
         turned.iter().copied().find(|d| fits(d)).or_else(gentlest).unwrap_or(heading)
+    }
+
+    /// `line` from its beginning, turned towards the contour wherever it would be too steep; about as
+    /// long.
+    pub fn along_slope(&self, line: &[Vec2]) -> Vec<Vec2> {
+        let total = polyline::length(line);
+        let count = (total / BENT_STEP_M).ceil().max(1.0) as usize;
+        let step_m = total / count as f64;
+        let mut out = vec![line[0]];
+        let mut before = Vec2::ZERO;
+        for i in 0..count {
+            let [from, to] = [i, i + 1].map(|k| polyline::point_at(line, step_m * k as f64));
+            let wanted = (to - from).normalize_or(before);
+            // Half of the turn that was needed last stays, so that the street swings.
+            let heading = (wanted + before * 0.7).normalize_or(wanted);
+            let at = out[i];
+            before = self.bent(at, heading, step_m);
+            out.push(at + before * step_m);
+        }
+        out
     }
 }
