@@ -47,3 +47,65 @@ impl PolygonFile {
         Polygon::new(ring(polygon.first()?), polygon[1..].iter().map(ring).collect())
     }
 }
+
+/// Areas that a parameter takes from a file: what they are for, and which examples serve there.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(untagged)]
+pub enum DomainsFile {
+    /// The file's name.
+    File(String),
+    /// What was read.
+    Read {
+        /// The areas, in the file's order.
+        areas: Vec<Domain>,
+    },
+}
+
+/// An area of a [`DomainsFile`].
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Domain {
+    /// `flat`, `coast`, `mountain`, `park`, `water` or anything else.
+    #[serde(rename = "use")]
+    pub usage: String,
+    /// Names of examples with their weights; none leaves the choice open.
+    pub examples: std::collections::BTreeMap<String, f64>,
+    /// Rings in metres in the city's frame, the outer one first.
+    polygon: Vec<Vec<[f64; 2]>>,
+}
+
+impl Domain {
+    /// Its outline; `None` where it has no area.
+    pub fn polygon(&self) -> Option<Polygon> {
+        PolygonFile::Read { polygon: self.polygon.clone() }.polygon()
+    }
+}
+
+impl Default for DomainsFile {
+    fn default() -> Self {
+        Self::File(String::new())
+    }
+}
+
+impl schemars::JsonSchema for DomainsFile {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "DomainsFile".into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!({ "type": "string", "x-file": "domains" })
+    }
+}
+
+impl DomainsFile {
+    /// The areas; none where none were read.
+    pub fn areas(&self) -> &[Domain] {
+        match self {
+            Self::Read { areas } => areas,
+            Self::File(_) => &[],
+        }
+    }
+}

@@ -14,6 +14,7 @@ use exurb_operation::Run;
 use super::error::Error;
 use super::growth::{Growth, Open};
 use super::network::{Landing, Piece, Standing, Vertex, Wish};
+use super::relief::Verdict;
 
 /// No bridge is longer over water, in metres.
 const LONGEST_M: f64 = 420.0;
@@ -134,6 +135,10 @@ fn crossing(growth: &Growth, number: usize, ford: &Ford, turn_rad: f64) -> Optio
     let cost_m = (far - near) + 0.3 * near + TURN_COST_M * turn + RISE_COST_M * rise_m;
     let total = polyline::length(&line);
     let deck = [(near - DECK_M).max(0.0), (far + DECK_M).min(total)];
+    let approaches = [polyline::part(&line, 0.0, deck[0]), polyline::part(&line, deck[1], total)];
+    if approaches.iter().any(|part| growth.relief.verdict(part) == Verdict::Steep) {
+        return None;
+    }
     Some(Crossing { cost_m, ford: number, line, deck })
 }
 
@@ -146,7 +151,7 @@ fn shores(growth: &Growth, at: Vec2, direction: Vec2) -> Option<(f64, f64)> {
     let dry_for = (LANDING_M / STEP_M) as usize + 1;
     let far = (near + 1..=steps).find(|i| (0..dry_for).all(|k| !wet(i + k)))?;
     let over = (far - near) as f64 * STEP_M;
-    (over <= LONGEST_M && near > 0).then(|| (near as f64 * STEP_M, far as f64 * STEP_M))
+    (over <= LONGEST_M && near > 0).then_some((near as f64 * STEP_M, far as f64 * STEP_M))
 }
 
 /// By how much one turns from the straightest street at a node to `direction`, in radians.

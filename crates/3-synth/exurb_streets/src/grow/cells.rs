@@ -19,7 +19,6 @@ use super::ground::Ground;
 use super::growth::{Growth, Open, Place};
 use super::layer::NodeKind;
 use super::network::{Network, Piece, Standing, Vertex};
-use super::params::Params;
 use super::plan::Plan;
 use super::{synthesize, unreached};
 
@@ -62,7 +61,6 @@ pub fn grow(
     claims: &Claims,
     ground: &Ground,
     plan: &Plan,
-    params: &Params,
     run: &Run,
 ) -> Result<Vec<Grown>, Error> {
     let area = &ground.area;
@@ -82,7 +80,7 @@ pub fn grow(
             let (net, seeds) = open_cell(main, &graph, &kinds, &at, face, plan, rng.clone());
             let claims = claims.window(&face.polygon);
             let mut growth =
-                Growth::new(net, plan, false, &face.polygon, &ground.relief, params, claims, rng);
+                Growth::new(net, plan, false, &face.polygon, &ground.relief, claims, rng);
             growth.queue.extend(seeds);
             enter(&mut growth, ground);
             if main.graph.edge_count() == 0 {

@@ -100,7 +100,6 @@ impl<'a> Growth<'a> {
         is_main: bool,
         area: &'a Polygon,
         relief: &'a Relief,
-        params: &'a Params,
         claims: Claims,
         rng: Rng,
     ) -> Self {
@@ -112,7 +111,7 @@ impl<'a> Growth<'a> {
             plan,
             is_main,
             area,
-            params,
+            params: plan.params,
             rng,
             queue,
             frontier,
@@ -309,6 +308,7 @@ impl<'a> Growth<'a> {
                 self.note_ford(node, &probe.line, &piece.street);
                 return None;
             }
+            Verdict::Kept => return None,
             Verdict::Steep => return self.lay_bent(node, line, wish, &piece.street),
         }
         let is_whole = probe.landing == Landing::Free && probe.kept > 0.999;

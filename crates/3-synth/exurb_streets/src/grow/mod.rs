@@ -23,6 +23,7 @@ mod bridges;
 mod cells;
 mod claims;
 mod detect;
+mod domains;
 mod drawing;
 mod edge;
 mod error;
@@ -56,6 +57,7 @@ use exurb_city::street_graph::StreetGraph;
 use exurb_city::{City, Edit, block};
 use exurb_operation::{Card, Example, Failure, Operation, Run, Scope};
 
+use domains::Domains;
 pub use error::Error;
 pub use ground::Ground;
 pub use learn::{Vocabulary, learn};
@@ -117,7 +119,7 @@ impl Operation for Grow {
             ),
         };
         let plan = learned.plan(city, &ground, params, run).map_err(failure)?;
-        let streets = synthesize(&ground, &plan, params, run).map_err(failure)?;
+        let streets = synthesize(&ground, &plan, run).map_err(failure)?;
         let mut streets = lawful(city, &ground, streets, run);
         assign_levels(&mut streets, &Hierarchy::default());
         run.phase("blocks");
@@ -138,13 +140,13 @@ impl Operation for Grow {
 
 impl Learned {
     /// What grows where in `target`.
-    fn plan(
-        &self,
+    fn plan<'a>(
+        &'a self,
         city: &City,
         ground: &Ground,
-        params: &Params,
+        params: &'a Params,
         run: &Run,
-    ) -> Result<Plan<'_>, Error> {
+    ) -> Result<Plan<'a>, Error> {
         let target = &ground.target;
         let (examples, frames) = (&self.vocabularies[..], &self.frames[..]);
         if params.interpolation.is_some() && examples.len() != 2 {
@@ -155,6 +157,8 @@ impl Learned {
         }
         Ok(Plan {
             examples,
+            params,
+            domains: Domains::of(city, &ground.area, examples, params, run)?,
             starts: starts::starts(city, ground, examples, frames, params)?,
             blend_m: params.blend * target.bounds().size().max_element(),
             interpolation: params.interpolation,

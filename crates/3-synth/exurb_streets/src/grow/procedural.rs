@@ -120,7 +120,7 @@ pub fn step(growth: &mut Growth, node: NodeId, direction: Vec2) {
     }
     let line = match growth.relief.verdict(&line) {
         Verdict::Steep => growth.relief.along_slope(&line),
-        Verdict::Fine | Verdict::Wet => line,
+        Verdict::Fine | Verdict::Wet | Verdict::Kept => line,
     };
     let street = street_like(growth, node);
     let piece = growth.made(&street, Origin::Procedural);

@@ -4,11 +4,15 @@
 //! The paper gives no limits; its program allows a spread of 0.3 rad within a patch and ground of 36°.
 //! Here a street has a limit for its own grade and one for the ground under it, both parameters.
 
-use exurb_city::{City, Land};
+use std::sync::Arc;
+
+use exurb_city::{Area, City, Land};
 use exurb_geom::{Vec2, polyline, trig};
 
 use super::params::Params;
 
+/// Land uses that streets leave alone; paths drawn there are given streets.
+const KEPT: [&str; 2] = ["park", "cemetery"];
 /// Places along a street that are looked at, in metres.
 const STEP_M: f64 = 8.0;
 /// The grade of a street is that over this length, in metres.
@@ -24,6 +28,8 @@ const TURN_RAD: f64 = 0.15;
 #[derive(Debug)]
 pub struct Relief {
     land: Option<Land>,
+    /// Ground kept free of streets, as if it were water.
+    parks: Option<Land>,
     most_slope: f64,
     most_grade: f64,
 }
@@ -35,6 +41,8 @@ pub enum Verdict {
     Fine,
     /// It runs into water.
     Wet,
+    /// It runs through a park or cemetery.
+    Kept,
     /// It is too steep, or the ground under it is.
     Steep,
 }
@@ -44,12 +52,21 @@ impl Relief {
     pub fn of(city: &City, params: &Params) -> Self {
         let land = Land::of(city);
         let land = (land.has_terrain() || land.has_water()).then_some(land);
-        Self { land, most_slope: params.slope, most_grade: params.grade }
+        let mut kept = City::empty(city.frame.clone(), city.target.clone());
+        let is_kept = |area: &&Area| KEPT.contains(&&*area.class);
+        kept.water = Arc::new(city.land_use.iter().filter(is_kept).cloned().collect());
+        let parks = (!kept.water.is_empty()).then(|| Land::of(&kept));
+        Self { land, parks, most_slope: params.slope, most_grade: params.grade }
     }
 
     /// Is there any water?
     pub fn has_water(&self) -> bool {
         self.land.as_ref().is_some_and(Land::has_water)
+    }
+
+    /// Does `p` lie in water or on ground kept free?
+    pub fn is_closed(&self, p: Vec2) -> bool {
+        self.is_wet(p) || self.parks.as_ref().is_some_and(|parks| parks.is_wet(p))
     }
 
     /// Does `p` lie in water?
@@ -59,7 +76,8 @@ impl Relief {
 
     /// May streets lie at `p`?
     pub fn bears(&self, p: Vec2) -> bool {
-        self.land.as_ref().is_none_or(|land| !land.is_wet(p) && land.slope(p) <= self.most_slope)
+        let fits = |land: &Land| land.slope(p) <= self.most_slope;
+        !self.is_closed(p) && self.land.as_ref().is_none_or(fits)
     }
 
     /// Height in metres; 0 on level ground.
@@ -69,12 +87,18 @@ impl Relief {
 
     /// May a street lie along `line`? O(length).
     pub fn verdict(&self, line: &[Vec2]) -> Verdict {
-        let Some(land) = &self.land else { return Verdict::Fine };
+        if self.land.is_none() && self.parks.is_none() {
+            return Verdict::Fine;
+        }
         let total = polyline::length(line);
         let count = (total / STEP_M).ceil().max(1.0) as usize;
         let places: Vec<Vec2> = (0..=count)
             .map(|i| polyline::point_at(line, total * i as f64 / count as f64))
             .collect();
+        if self.parks.as_ref().is_some_and(|parks| places.iter().any(|p| parks.is_wet(*p))) {
+            return Verdict::Kept;
+        }
+        let Some(land) = &self.land else { return Verdict::Fine };
         let is_wet = |i: usize| {
             let (p, before) = (places[i], places[i.max(1) - 1]);
             let aside = (places[i.max(1)] - before).perp().normalize_or_zero() * SHORE_M;

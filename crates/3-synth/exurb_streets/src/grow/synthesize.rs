@@ -14,7 +14,6 @@ use super::ground::Ground;
 use super::growth::{Growth, Place};
 use super::learn::Vocabulary;
 use super::network::{Coherent, Network, Piece, Standing, Vertex};
-use super::params::Params;
 use super::placing;
 use super::plan::{Plan, Start};
 use super::{bridges, fill, finish, unreached};
@@ -30,25 +29,20 @@ pub fn margin_m(examples: &[Vocabulary]) -> f64 {
 }
 
 /// Grows streets on that ground; the result holds those of the city around, too.
-pub fn synthesize(
-    ground: &Ground,
-    plan: &Plan,
-    params: &Params,
-    run: &Run,
-) -> Result<StreetGraph, Error> {
+pub fn synthesize(ground: &Ground, plan: &Plan, run: &Run) -> Result<StreetGraph, Error> {
     run.phase("main streets");
-    let (mut main, claims) = grow_main(ground, plan, params, run)?;
-    if params.remove_dangling {
+    let (mut main, claims) = grow_main(ground, plan, run)?;
+    if plan.params.remove_dangling {
         remove_open_ends(&mut main, plan);
     }
     cells::make_berths(&mut main);
 
     run.phase("local streets");
-    let local = cells::grow(&main, &claims, ground, plan, params, run)?;
+    let local = cells::grow(&main, &claims, ground, plan, run)?;
 
     run.phase("finish");
     let graph = join(main, local);
-    let streets = finish::finish(graph, ground, dead_end_share(plan), params.remove_dangling);
+    let streets = finish::finish(graph, ground, dead_end_share(plan), plan.params.remove_dangling);
     if streets.edge_count() == 0 {
         let area_km2 = ground.target.area_m2() / 1e6;
         return Err(Error::Nothing { starts: plan.starts.len(), area_km2 });
@@ -66,19 +60,14 @@ fn dead_end_share(plan: &Plan) -> Option<f64> {
     (total > 0.0).then(|| sum / total)
 }
 
-fn grow_main(
-    ground: &Ground,
-    plan: &Plan,
-    params: &Params,
-    run: &Run,
-) -> Result<(Network, Claims), Error> {
+fn grow_main(ground: &Ground, plan: &Plan, run: &Run) -> Result<(Network, Claims), Error> {
     let area = &ground.area;
     let first = plan.example_at(area.interior_point());
     let mut net = Network::new(plan.statistics(first, true).length_mean_m);
     ground.furnish(&mut net);
     let relief = &ground.relief;
-    let claims = Claims::new(area, |p| relief.is_wet(p));
-    let mut growth = Growth::new(net, plan, true, area, relief, params, claims, run.stream(0));
+    let claims = Claims::new(area, |p| relief.is_closed(p));
+    let mut growth = Growth::new(net, plan, true, area, relief, claims, run.stream(0));
     ground.begin_main(&mut growth);
     for start in &plan.starts {
         begin(&mut growth, start);
