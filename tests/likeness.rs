@@ -9,7 +9,7 @@
 use std::path::Path;
 
 use exurb_city::{City, Part};
-use exurb_geom::{Bounds, Polygon, Vec2};
+use exurb_geom::{Polygon, Vec2};
 use exurb_likeness::patches::{area_under_curve, kernel_distance, told_apart};
 use exurb_likeness::{Panel, distance, windows};
 use exurb_measure::block_shapes::{self, BlockShape};
