@@ -75,8 +75,9 @@ def neighbourhoods(city, at, ends, lines, graph):
     for corner in squares(city, CELL_M):
         inside = ((places >= corner) & (places < corner + CELL_M)).all(axis=1)
         cell = graph.subgraph(ends[inside].tolist())
-        osmnx.stats.intersection_count(cell, min_streets=3)
-        osmnx.stats.streets_per_node_counts(cell)
+        if len(cell) > 0:
+            osmnx.stats.intersection_count(cell, min_streets=3)
+            osmnx.stats.streets_per_node_counts(cell)
         box = shapely.box(*corner, *(corner + CELL_M))
         shapely.length(shapely.intersection(lines.geometry.array[tree.query(box)], box)).sum()
     middles, bearings, lengths = pieces(lines)
@@ -90,7 +91,8 @@ def neighbourhoods(city, at, ends, lines, graph):
         streets = networkx.MultiGraph(crs="EPSG:4326")
         for i in np.flatnonzero(near):
             streets.add_edge(2 * i, 2 * i + 1, length=lengths[i], bearing=bearings[i])
-        osmnx.orientation_entropy(streets, weight="length")
+        if len(streets) > 0:
+            osmnx.orientation_entropy(streets, weight="length")
 
 
 def pieces(lines):

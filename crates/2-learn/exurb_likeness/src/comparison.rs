@@ -14,6 +14,8 @@ use crate::{HeldOut, Measured, Scorecard, Side, Yardstick, windows};
 pub const COPY_RADII_M: [f64; 2] = [150.0, 300.0];
 /// A window with fewer junctions tells little.
 const FEW_JUNCTIONS: usize = 30;
+/// A map is a strip when one side is so many times the other.
+const STRIP: f64 = 1.5;
 /// Two parts of one city overlap when they share more than this of the smaller, by area.
 const OVERLAP: f64 = 0.05;
 
@@ -117,9 +119,15 @@ pub fn common_size<'a>(cities: impl IntoIterator<Item = &'a City>) -> Vec2 {
     cities.into_iter().map(|city| city.target.bounds().size()).fold(Vec2::INFINITY, Vec2::min)
 }
 
-/// The parts of an example without a held-out one: west and east half of its densest square.
+/// The parts of an example without a held-out one: west and east half of its densest square, north
+/// and south where the map is a strip from north to south.
 pub fn split(example: &City) -> [Place<'_>; 2] {
-    windows::halves(example, [Part::West, Part::East]).map(|window| Place { city: example, window })
+    let size = example.target.bounds().size();
+    let parts = match size.y > STRIP * size.x {
+        true => [Part::North, Part::South],
+        false => [Part::West, Part::East],
+    };
+    windows::halves(example, parts).map(|window| Place { city: example, window })
 }
 
 impl Reference {

@@ -33,7 +33,8 @@ struct Options {
     #[arg(long, required_unless_present = "yardstick", value_name = "EXAMPLE")]
     with: Vec<PathBuf>,
     /// Part of the example that the city was not made from, one for each example [default: the east
-    /// half of the example's densest square, its west half standing for the example]
+    /// half of the example's densest square, its west half standing for the example; of a strip from
+    /// north to south the south half]
     #[arg(long, value_name = "CITY")]
     held_out: Vec<PathBuf>,
     /// Other cities, whose mean distance scores 0 [default: a built-in panel of nine cities]
