@@ -15,8 +15,8 @@ use exurb_likeness::{Panel, distance, windows};
 use exurb_measure::block_shapes::{self, BlockShape};
 use exurb_measure::network::rectangle;
 use exurb_measure::{
-    Network, Sample, bearings, buildings, built_blocks, junctions, moving_windows,
-    natural_streets, parcels, paths, segments,
+    Network, Sample, bearings, buildings, built_blocks, junctions, moving_windows, natural_streets,
+    parcels, paths, segments,
 };
 use exurb_operation::{Run, rng};
 use exurb_recipe::Source;
@@ -26,7 +26,8 @@ use serde_json::{Value, json};
 
 /// Side of a window in metres: so small that every junction inside is a source of paths, and no
 /// draw decides.
-const SIDES_M: [(&str, f64); 3] = [("liege", 2000.0), ("salt_lake_city", 2400.0), ("aleppo", 1500.0)];
+const SIDES_M: [(&str, f64); 3] =
+    [("liege", 2000.0), ("salt_lake_city", 2400.0), ("aleppo", 1500.0)];
 
 #[test]
 fn streets_and_blocks_measure_as_in_momepy_osmnx_and_networkx() {
@@ -176,7 +177,8 @@ fn distances() -> Value {
     let (wa, wb) = (draw(300, 4.0), draw(211, 1.0));
     let weights = |w: &[f64]| -> Vec<f64> { w.iter().map(|w| w + 0.1).collect() };
     let (wa, wb) = (weights(&wa), weights(&wb));
-    let weighted = |v: &[f64], w: &[f64]| Sample::weighted(v.iter().copied().zip(w.iter().copied()));
+    let weighted =
+        |v: &[f64], w: &[f64]| Sample::weighted(v.iter().copied().zip(w.iter().copied()));
     let plain = |v: &[f64]| Sample::plain(v.iter().copied());
     let pairs = |v: &[f64]| -> Vec<[f64; 2]> { v.chunks_exact(2).map(|p| [p[0], p[1]]).collect() };
     let (p, q) = (pairs(&a), pairs(&b));
@@ -217,7 +219,9 @@ fn sample(sample: &Sample) -> Value {
 
 fn rings(polygon: &Polygon) -> Vec<Vec<[f64; 2]>> {
     let ring = |ring: &[exurb_geom::GridPoint]| ring.iter().map(|p| p.to_m().to_array()).collect();
-    std::iter::once(ring(polygon.exterior())).chain(polygon.interiors().iter().map(|r| ring(r))).collect()
+    std::iter::once(ring(polygon.exterior()))
+        .chain(polygon.interiors().iter().map(|r| ring(r)))
+        .collect()
 }
 
 fn points(line: &[Vec2]) -> Vec<[f64; 2]> {

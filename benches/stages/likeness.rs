@@ -55,7 +55,8 @@ fn compared(one: &Path, other: &Path) {
     row(what, "s", seconds(&said, "whole"), WHOLE_S, "wanted, all", Better::Less);
     let exurb = PathBuf::from(std::env::var_os("EXURB_BIN").unwrap_or_default());
     let command = [exurb.as_os_str(), "compare".as_ref(), one.as_os_str(), "--with".as_ref()];
-    let command = [&command[..], &[other.as_os_str(), "--held-out".as_ref(), other.as_os_str()]].concat();
+    let command =
+        [&command[..], &[other.as_os_str(), "--held-out".as_ref(), other.as_os_str()]].concat();
     match measure(1, &command) {
         Some(took) => {
             let what = "exurb compare --held-out, maps read";

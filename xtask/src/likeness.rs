@@ -26,7 +26,11 @@ pub fn run(options: &[&str]) -> Outcome {
     let mut protocol = std::process::Command::new(target().join("release/exurb_protocol"));
     let table = output_of(protocol.args(options).args(maps))?;
     println!("{table}");
-    if options.is_empty() && chosen.is_empty() { write("protocol", table.trim_end()) } else { Ok(()) }
+    if options.is_empty() && chosen.is_empty() {
+        write("protocol", table.trim_end())
+    } else {
+        Ok(())
+    }
 }
 
 /// Scores spoilt copies, other cities and streets by rule against the cities of the panel.
@@ -86,6 +90,7 @@ fn write(name: &str, table: &str) -> Outcome {
     let page = std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
     let parts =
         page.split_once(&begin).and_then(|(head, rest)| Some((head, rest.split_once(&end)?.1)));
-    let (head, tail) = parts.ok_or_else(|| format!("{PAGE} lacks the marks of the {name} table"))?;
+    let (head, tail) =
+        parts.ok_or_else(|| format!("{PAGE} lacks the marks of the {name} table"))?;
     std::fs::write(&path, format!("{head}{begin}{table}\n{end}{tail}")).map_err(|e| e.to_string())
 }

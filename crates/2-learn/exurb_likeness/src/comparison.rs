@@ -279,9 +279,8 @@ fn cut(size: Vec2, held_out: Vec2) -> Option<String> {
 fn left_out(yardstick: &Yardstick) -> Option<String> {
     let absent = STREETS.iter().filter(|m| !yardstick.held_out().has(m)).map(|m| m.name);
     let absent: Vec<&str> = absent.collect();
-    (!absent.is_empty()).then(|| {
-        format!("left out, too few values in windows of this size: {}", absent.join(", "))
-    })
+    (!absent.is_empty())
+        .then(|| format!("left out, too few values in windows of this size: {}", absent.join(", ")))
 }
 
 /// A note for every part that shares ground with the held-out one.

@@ -48,8 +48,7 @@ fn districts_with_like_statistics_are_told_apart_and_halves_of_a_city_are_not() 
     let panel = Panel::builtin().unwrap();
     let subject = |city, window, key| Subject::of(Place { city, window }, &panel, 1, key);
     let liege_east = subject(&liege, l[1], CANDIDATE);
-    let [west, east] =
-        [subject(&tel_aviv, t[0], HELD_OUT), subject(&tel_aviv, t[1], CANDIDATE)];
+    let [west, east] = [subject(&tel_aviv, t[0], HELD_OUT), subject(&tel_aviv, t[1], CANDIDATE)];
 
     let (a, b) = (simple_statistics(&liege_east.network), simple_statistics(&west.network));
     println!("{a:.4?} {b:.4?}");

@@ -84,7 +84,13 @@ fn every_example_has_its_column() {
 fn other_cities_can_be_the_floor() {
     let folder = tempdir().unwrap();
     let args = [
-        "builtin:suburb", "--with", EXAMPLE, "--floor", "builtin:grid", "--floor", "builtin:saltlake",
+        "builtin:suburb",
+        "--with",
+        EXAMPLE,
+        "--floor",
+        "builtin:grid",
+        "--floor",
+        "builtin:saltlake",
     ];
     let found = document(folder.path(), &args);
     assert_eq!(found["floor"].as_array().unwrap().len(), 2);
@@ -101,7 +107,8 @@ fn the_page_and_the_map_are_whole_or_not_there() {
     assert!(page.starts_with("<!DOCTYPE html>") && page.ends_with("</html>\n"));
     // Nothing is fetched: no address, no script, no style or picture that is not inside.
     for word in ["http:", "https:", "//", "<script", "<link", "@import", "url("] {
-        let plain: String = page.split("base64,").map(|part| part.split_once('"').map_or(part, |p| p.1)).collect();
+        let plain: String =
+            page.split("base64,").map(|part| part.split_once('"').map_or(part, |p| p.1)).collect();
         assert!(!plain.contains(word), "{word}");
     }
     for words in ["What differs most", "Side by side", "OpenStreetMap contributors", "city"] {
