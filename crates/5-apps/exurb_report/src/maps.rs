@@ -10,15 +10,27 @@ use exurb_plan::Options;
 use crate::html::text;
 use crate::{Column, Error, Report};
 
-/// Pixels of all maps of a page together, so that it stays small.
+/// Pixels of all maps of a page together; a quarter less is tried until they are no more than so many
+/// bytes.
 const ALL_PIXELS: f64 = 1.5e6;
+const MOST_BYTES: usize = 1_900_000;
+const LESS: f64 = 0.75;
+/// Pixels of a map are not made fewer than this.
+const LEAST_PIXELS: f64 = 1e4;
 /// A map is at most this wide.
 const MOST_WIDTH_PX: f64 = 900.0;
 
 /// A row for every example: the candidate, the example's part, its held-out part, at one scale.
 pub fn maps(report: &Report) -> Result<String, Error> {
-    let each = ALL_PIXELS / (3 * report.columns.len().max(1)) as f64;
-    report.columns.iter().map(|column| row(report.candidate, column, each)).collect()
+    let mut each = ALL_PIXELS / (3 * report.columns.len().max(1)) as f64;
+    loop {
+        let rows = report.columns.iter().map(|column| row(report.candidate, column, each));
+        let maps: String = rows.collect::<Result<_, _>>()?;
+        if maps.len() <= MOST_BYTES || each < LEAST_PIXELS {
+            return Ok(maps);
+        }
+        each *= LESS;
+    }
 }
 
 fn row(candidate: &City, column: &Column, pixels: f64) -> Result<String, Error> {
