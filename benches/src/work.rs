@@ -1,5 +1,6 @@
 //! The work that benches measure, a process each; prints what it did as one line of JSON:
-//! `read MAP`, `grow EXAMPLE SIDE_M`, `faces MAP LINES.txt`.
+//! `read MAP`, `grow EXAMPLE SIDE_M`, `faces MAP LINES.txt`, `measures MAP STREETS.json`,
+//! `likeness MAP MAP`.
 
 #![allow(clippy::print_stdout, reason = "its output is the result")]
 
@@ -11,6 +12,10 @@ use std::time::Instant;
 use exurb_city::{City, ImportOptions};
 use exurb_geom::{GridPoint, Polygon, Vec2};
 use exurb_graph::Faces;
+use exurb_likeness::measures::Family;
+use exurb_likeness::patches::{CANDIDATE, HELD_OUT, Patches};
+use exurb_likeness::{HeldOut, Measured, Panel, STREETS, Side};
+use exurb_measure::Network;
 use exurb_operation::{Example, Run, Scope, erase};
 use serde_json::{Value, json};
 
@@ -21,6 +26,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         ["read", map] => read(map.as_ref())?,
         ["grow", example, side_m] => grow(example.as_ref(), side_m.parse()?)?,
         ["faces", map, lines] => faces(map.as_ref(), lines.as_ref())?,
+        ["measures", map, streets] => measures(map.as_ref(), streets.as_ref())?,
+        ["likeness", one, other] => likeness(one.as_ref(), other.as_ref())?,
         _ => return Err("no such work".into()),
     };
     println!("{said}");
@@ -75,4 +82,60 @@ fn faces(map: &Path, lines: &Path) -> Result<Value, Box<dyn Error>> {
         seconds = seconds.min(started.elapsed().as_secs_f64());
     }
     Ok(json!({ "seconds": seconds, "faces": count, "edges": city.streets.edge_count() }))
+}
+
+/// All measures of the streets and blocks of a map's densest 5 km square; the same streets, cut and
+/// cleaned, as a file for the yardstick.
+fn measures(map: &Path, streets: &Path) -> Result<Value, Box<dyn Error>> {
+    let network = densest(&city_of(map)?);
+    let nodes = network.graph.nodes().map(|(id, node)| {
+        let at = node.at.to_m();
+        json!([id.0, at.x, at.y, node.data.cut])
+    });
+    let line = |points: Vec<Vec2>| points.iter().map(|p| p.to_array()).collect::<Vec<_>>();
+    let edges = network.graph.edges().map(|(_, e)| json!([e.from.0, e.to.0, line(e.line_m())]));
+    let window = [network.window.min.to_array(), network.window.max.to_array()].concat();
+    let document = json!({
+        "window": window, "nodes": nodes.collect::<Vec<_>>(), "edges": edges.collect::<Vec<_>>(),
+    });
+    std::fs::write(streets, document.to_string())?;
+    let mut seconds = f64::INFINITY;
+    for _ in 0..3 {
+        let started = Instant::now();
+        let _ = Measured::of_network(&network);
+        seconds = seconds.min(started.elapsed().as_secs_f64());
+    }
+    Ok(json!({ "seconds": seconds, "edges": network.graph.edge_count() }))
+}
+
+/// Two cities compared, densest 5 km square with densest 5 km square, without and with the
+/// discriminator. Reading the maps is not counted.
+fn likeness(one: &Path, other: &Path) -> Result<Value, Box<dyn Error>> {
+    let panel = Panel::builtin()?;
+    let (one, other) = (city_of(one)?, city_of(other)?);
+    let started = Instant::now();
+    let (a, b) = rayon::join(
+        || Measured::of_network(&densest(&one)),
+        || Measured::of_network(&densest(&other)),
+    );
+    let held_out = HeldOut::new(b.clone(), None, [&a], 1);
+    let is_plain = |m: &&exurb_likeness::Measure| m.family != Family::Patches;
+    let side = Side { measured: &a, patches: None };
+    let mut found =
+        STREETS.iter().filter(is_plain).filter_map(|m| held_out.distance(m, side)).count();
+    let plain = started.elapsed().as_secs_f64();
+    let look = |m: &Measured, key| {
+        m.image.as_ref().map(|image| Patches::of(image, &panel.dictionary, 1, key))
+    };
+    let (patches, its) = rayon::join(|| look(&a, CANDIDATE), || look(&b, HELD_OUT));
+    let held_out = HeldOut::new(b, its, [&a], 1);
+    let side = Side { measured: &a, patches: patches.as_ref() };
+    let of_patches = STREETS.iter().filter(|m| !is_plain(m));
+    found += of_patches.filter_map(|m| held_out.distance(m, side)).count();
+    let whole = started.elapsed().as_secs_f64();
+    Ok(json!({ "plain": plain, "whole": whole, "measures": found }))
+}
+
+fn densest(city: &City) -> Network {
+    Network::of(&city.streets, exurb_city::densest_square::of_city(city))
 }

@@ -1,13 +1,13 @@
-//! `likeness`: the protocol over every shared map, and its table in docs/likeness.md; `panel`: the
-//! built-in panel of `exurb compare`, measured anew.
+//! `likeness`: the protocol over every shared map, and its table in docs/likeness.md; `yardstick`: the
+//! table there that shows whether the scale behaves; `panel`: the built-in panel of `exurb compare`,
+//! measured anew.
 
 use std::path::PathBuf;
 
 use crate::shell::{self, Outcome, cargo, output_of, root, target};
 
-/// The table stands between these lines.
-const BEGIN: &str = "<!-- protocol: begin -->\n";
-const END: &str = "<!-- protocol: end -->\n";
+/// The page with the tables.
+const PAGE: &str = "docs/likeness.md";
 
 /// Runs the protocol with these options over the shared maps, or over those whose names follow
 /// `--maps`. Without options the table goes into docs/likeness.md.
@@ -26,26 +26,47 @@ pub fn run(options: &[&str]) -> Outcome {
     let mut protocol = std::process::Command::new(target().join("release/exurb_protocol"));
     let table = output_of(protocol.args(options).args(maps))?;
     println!("{table}");
-    if options.is_empty() && chosen.is_empty() { write(&table) } else { Ok(()) }
+    if options.is_empty() && chosen.is_empty() {
+        write("protocol", table.trim_end())
+    } else {
+        Ok(())
+    }
+}
+
+/// Scores spoilt copies, other cities and streets by rule against the cities of the panel.
+pub fn yardstick() -> Outcome {
+    let maps = panel_maps("CITIES: [&str; 9] = [")?;
+    if maps.iter().any(|map| !map.exists()) {
+        println!("skipped: no shared data");
+        return Ok(());
+    }
+    shell::run(&mut cargo("build --release --locked --bin exurb"))?;
+    let mut exurb = std::process::Command::new(target().join("release/exurb"));
+    let table = output_of(exurb.args(["compare", "--quiet", "--yardstick"]).args(maps))?;
+    println!("{table}");
+    write("yardstick", &format!("```text\n{}\n```", table.trim_end()))
 }
 
 /// Measures the cities and towns of the panel and writes what `exurb compare` has built in.
 pub fn panel() -> Outcome {
-    let source = root().join("crates/2-learn/exurb_likeness/src/panel.rs");
-    let source = std::fs::read_to_string(source).map_err(|e| e.to_string())?;
-    let folder = root().join("../shared/data/osm");
-    let maps = |list: &str| -> Vec<PathBuf> {
-        let names = source.split_once(list).and_then(|(_, rest)| rest.split_once(']'));
-        let names = names.map_or("", |(names, _)| names).split('"').skip(1).step_by(2);
-        names.map(|name| folder.join(format!("{name}.osm.pbf"))).collect()
-    };
-    let (cities, towns) = (maps("CITIES: [&str; 9] = ["), maps("TOWNS: [&str; 9] = ["));
+    let cities = panel_maps("CITIES: [&str; 9] = [")?;
+    let towns = panel_maps("TOWNS: [&str; 9] = [")?;
     if let Some(missing) = cities.iter().chain(&towns).find(|map| !map.exists()) {
         return Err(format!("the panel needs {}", missing.display()));
     }
     let file = root().join("crates/2-learn/exurb_likeness/data/panel.json.gz");
     let mut example = cargo("run --release --locked --package exurb_likeness --example panel --");
     shell::run(example.arg(&file).args(cities).arg("--").args(towns))
+}
+
+/// The maps that a list in the source of the panel names.
+fn panel_maps(list: &str) -> Outcome<Vec<PathBuf>> {
+    let source = root().join("crates/2-learn/exurb_likeness/src/panel.rs");
+    let source = std::fs::read_to_string(source).map_err(|e| e.to_string())?;
+    let folder = root().join("../shared/data/osm");
+    let names = source.split_once(list).and_then(|(_, rest)| rest.split_once(']'));
+    let names = names.map_or("", |(names, _)| names).split('"').skip(1).step_by(2);
+    Ok(names.map(|name| folder.join(format!("{name}.osm.pbf"))).collect())
 }
 
 fn maps() -> Outcome<Vec<PathBuf>> {
@@ -62,12 +83,14 @@ fn is_chosen(map: &std::path::Path, names: &[&str]) -> bool {
     names.is_empty() || names.iter().any(|name| file.split('.').next() == Some(*name))
 }
 
-fn write(table: &str) -> Outcome {
-    let path = root().join("docs/likeness.md");
+/// Puts a table between its marks in the page.
+fn write(name: &str, table: &str) -> Outcome {
+    let (begin, end) = (format!("<!-- {name}: begin -->\n"), format!("<!-- {name}: end -->\n"));
+    let path = root().join(PAGE);
     let page = std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
     let parts =
-        page.split_once(BEGIN).and_then(|(head, rest)| Some((head, rest.split_once(END)?.1)));
-    let (head, tail) = parts.ok_or("docs/likeness.md lacks the marks of the table")?;
-    let page = format!("{head}{BEGIN}{}\n{END}{tail}", table.trim_end());
-    std::fs::write(&path, page).map_err(|e| e.to_string())
+        page.split_once(&begin).and_then(|(head, rest)| Some((head, rest.split_once(&end)?.1)));
+    let (head, tail) =
+        parts.ok_or_else(|| format!("{PAGE} lacks the marks of the {name} table"))?;
+    std::fs::write(&path, format!("{head}{begin}{table}\n{end}{tail}")).map_err(|e| e.to_string())
 }

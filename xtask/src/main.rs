@@ -10,6 +10,7 @@
 //! | `arrows` | crates use only what stands below them |
 //! | `maps` | grows a city from every shared map and writes docs/maps.md |
 //! | `likeness [OPTION ...]` | scores what is grown from every shared map; `--inside` tunes |
+//! | `yardstick` | makes the table anew that shows whether the scale of likeness behaves |
 //! | `panel` | measures the built-in panel of `exurb compare` anew |
 //! | `licences` | every dependency has a licence on the list |
 //!
@@ -32,7 +33,7 @@ mod tools;
 use std::process::ExitCode;
 
 const USAGE: &str = "usage: cargo xtask check | test | bless | bench [STAGE] | \
-                     fuzz [TARGET] [SECONDS] | maps | likeness [OPTION ...] | panel | \
+                     fuzz [TARGET] [SECONDS] | maps | likeness [OPTION ...] | yardstick | panel | \
                      arrows | licences";
 
 fn main() -> ExitCode {
@@ -47,6 +48,7 @@ fn main() -> ExitCode {
         ["fuzz", ref rest @ ..] => fuzz::run(rest),
         ["maps"] => maps::run(),
         ["likeness", ref options @ ..] => likeness::run(options),
+        ["yardstick"] => likeness::yardstick(),
         ["panel"] => likeness::panel(),
         ["arrows"] => arrows::run(),
         ["licences"] => licences::run(),

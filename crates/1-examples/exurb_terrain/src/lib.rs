@@ -1,6 +1,6 @@
 //! Height maps both ways: files to the terrain of a city and back.
 //!
-//! [`read`] takes GeoTIFF, SRTM tiles, ESRI ASCII grids and grey PNG, told by content, as a [`Dem`]:
+//! [`read()`] takes GeoTIFF, SRTM tiles, ESRI ASCII grids and grey PNG, told by content, as a [`Dem`]:
 //! a raster in its own coordinates. [`Dem::onto`] makes it a terrain in a city's frame.
 //! [`to_geotiff`] and [`to_png`] write the terrain of a city for GIS programs and game engines; both
 //! are read back as they were written (PNG within half a step of its 65,536).

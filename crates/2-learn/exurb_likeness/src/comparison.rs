@@ -6,7 +6,7 @@ use exurb_measure::Network;
 
 use crate::copying::Original;
 use crate::measures::{BUILT, Family, STREETS};
-use crate::panel::{self, Panel};
+use crate::panel::{self, Panel, PanelCity};
 use crate::patches::{CANDIDATE, HELD_OUT, Patches};
 use crate::{HeldOut, Measured, Scorecard, Side, Yardstick, windows};
 
@@ -14,6 +14,8 @@ use crate::{HeldOut, Measured, Scorecard, Side, Yardstick, windows};
 pub const COPY_RADII_M: [f64; 2] = [150.0, 300.0];
 /// A window with fewer junctions tells little.
 const FEW_JUNCTIONS: usize = 30;
+/// A map is a strip when one side is so many times the other.
+const STRIP: f64 = 1.5;
 /// Two parts of one city overlap when they share more than this of the smaller, by area.
 const OVERLAP: f64 = 0.05;
 
@@ -117,9 +119,15 @@ pub fn common_size<'a>(cities: impl IntoIterator<Item = &'a City>) -> Vec2 {
     cities.into_iter().map(|city| city.target.bounds().size()).fold(Vec2::INFINITY, Vec2::min)
 }
 
-/// The parts of an example without a held-out one: west and east half of its densest square.
+/// The parts of an example without a held-out one: west and east half of its densest square, north
+/// and south where the map is a strip from north to south.
 pub fn split(example: &City) -> [Place<'_>; 2] {
-    windows::halves(example, [Part::West, Part::East]).map(|window| Place { city: example, window })
+    let size = example.target.bounds().size();
+    let parts = match size.y > STRIP * size.x {
+        true => [Part::North, Part::South],
+        false => [Part::West, Part::East],
+    };
+    windows::halves(example, parts).map(|window| Place { city: example, window })
 }
 
 impl Reference {
@@ -151,17 +159,24 @@ impl Reference {
         let floor: Vec<Side> =
             others.iter().map(Subject::side).chain(of_panel.iter().map(|c| c.side())).collect();
         let names = cities.iter().map(|c| c.metadata.name.to_string());
+        let held_out_size = held_out.window.size();
         let held_out = held_out.cut(size);
         let mut notes = overlapping(parts, held_out);
         let Subject { network, measured, patches } = Subject::of(held_out, panel, seed, HELD_OUT);
         notes.extend(thin(&network, "the held-out part"));
+        notes.extend(cut(size, held_out_size));
         let real = own.iter().map(|s| &s.measured).chain(floor.iter().map(|s| s.measured));
         let held_out = HeldOut::new(measured, patches, real, seed);
         let sides: Vec<Side> = own.iter().map(Subject::side).collect();
         let whole = Network::of(&example.streets, example.target.bounds());
-        let floor_names = names.chain(of_panel.iter().map(|c| c.name.clone())).collect();
+        // Towns of the panel tell of buildings alone.
+        let is_town = |c: &PanelCity| c.measured.degrees.is_none();
+        let built = BUILT.iter().any(|m| held_out.has(m));
+        let listed = of_panel.iter().filter(|c| built || !is_town(c)).map(|c| c.name.clone());
+        let floor_names = names.chain(listed).collect();
         let measures = [&STREETS[..], &BUILT].concat();
         let yardstick = Yardstick::new(held_out, &measures, &sides, &floor);
+        notes.extend(left_out(&yardstick));
         Self {
             name: example.metadata.name.to_string(),
             size,
@@ -205,6 +220,7 @@ impl Reference {
             notes.push("the candidate is a copy of the example: scores near 1 mean nothing".into());
         }
         let example_share = example_share(city, &self.name);
+        notes.extend(made_from_others(city, &self.name, example_share));
         Likeness { scorecard, copy_rates, example_share, candidate, notes }
     }
 }
@@ -222,6 +238,22 @@ fn example_share(city: &City, name: &str) -> Option<f64> {
     (all > 0.0).then(|| copied / all)
 }
 
+/// A note for a candidate whose streets name examples, but not this one.
+fn made_from_others(city: &City, name: &str, example_share: Option<f64>) -> Option<String> {
+    let mut sources: Vec<&str> =
+        city.streets.edges().filter_map(|(_, e)| e.data.provenance.source.as_deref()).collect();
+    sources.sort_unstable();
+    sources.dedup();
+    let is_strange = example_share == Some(0.0) && !sources.is_empty() && !sources.contains(&name);
+    is_strange.then(|| {
+        format!(
+            "no street says that it comes from {name}, they name {}: compare with that file to see \
+             what was laid from it",
+            sources.join(", ")
+        )
+    })
+}
+
 fn thin(network: &Network, whose: &str) -> Vec<String> {
     match network.junctions().count() {
         few if few < FEW_JUNCTIONS => vec![format!(
@@ -229,6 +261,26 @@ fn thin(network: &Network, whose: &str) -> Vec<String> {
         )],
         _ => Vec::new(),
     }
+}
+
+/// A note that windows were cut, when the held-out part is larger than what is compared.
+fn cut(size: Vec2, held_out: Vec2) -> Option<String> {
+    let is_cut = (held_out - size).max_element() > 0.02 * held_out.max_element();
+    is_cut.then(|| {
+        format!(
+            "all windows were cut to {:.0} m x {:.0} m, the largest that every one of them holds; the \
+             held-out part has {:.0} m x {:.0} m",
+            size.x, size.y, held_out.x, held_out.y
+        )
+    })
+}
+
+/// A note on the measures of streets and blocks that the held-out part is too small for.
+fn left_out(yardstick: &Yardstick) -> Option<String> {
+    let absent = STREETS.iter().filter(|m| !yardstick.held_out().has(m)).map(|m| m.name);
+    let absent: Vec<&str> = absent.collect();
+    (!absent.is_empty())
+        .then(|| format!("left out, too few values in windows of this size: {}", absent.join(", ")))
 }
 
 /// A note for every part that shares ground with the held-out one.

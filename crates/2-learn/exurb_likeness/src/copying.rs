@@ -1,7 +1,8 @@
 //! Copying: how much of a city stands in its example, junction for junction.
 //!
 //! A junction is copied when some junction of the example has the same leg lengths and, once it is
-//! turned onto the same leg, nearly all nodes around it fall on nodes of the example.
+//! turned onto the same leg, nearly all nodes around it fall on nodes of the example. A leg that the
+//! window cuts is as long as what is left of it, or longer.
 
 use exurb_geom::{PointIndex, Vec2};
 use exurb_graph::NodeId;
@@ -33,11 +34,12 @@ struct Junction {
     legs: Vec<Leg>,
 }
 
-/// A leg: its length in metres, and the way to its other end.
+/// A leg: its length in metres, the way to its other end, and whether the window cuts it there.
 #[derive(Clone, Copy, Debug)]
 struct Leg {
     length_m: f64,
     chord: Vec2,
+    is_cut: bool,
 }
 
 impl Original {
@@ -113,13 +115,22 @@ impl Junction {
         let leg = |d: &exurb_graph::Dart| Leg {
             length_m: graph.edge(d.edge()).length_m(),
             chord: network.at(graph.head(*d)) - at,
+            is_cut: network.is_cut(graph.head(*d)),
         };
-        LEGS.contains(&darts.len()).then(|| Self { at, legs: darts.iter().map(leg).collect() })
+        let mut legs: Vec<Leg> = darts.iter().map(leg).collect();
+        // Junctions are turned onto the first leg, which had better be whole.
+        let whole = legs.iter().position(|leg| !leg.is_cut)?;
+        legs.rotate_left(whole);
+        LEGS.contains(&legs.len()).then_some(Self { at, legs })
     }
 
     /// Are its legs, from number `turn` on, as long as those of `other`?
     fn has_legs_of(&self, other: &Self, turn: usize) -> bool {
         let n = self.legs.len();
-        (0..n).all(|i| (self.legs[(i + turn) % n].length_m - other.legs[i].length_m).abs() < SAME_M)
+        (0..n).all(|i| {
+            let (own, wanted) = (self.legs[(i + turn) % n], other.legs[i]);
+            let longer_m = own.length_m - wanted.length_m;
+            longer_m.abs() < SAME_M || (wanted.is_cut && longer_m > 0.0)
+        })
     }
 }

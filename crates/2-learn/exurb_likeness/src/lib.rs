@@ -12,6 +12,7 @@
 //! | [`mod@patches`] | the discriminator |
 //! | [`explain`], [`words`] | what a score means, in a sentence |
 //! | [`document`] | what a comparison found, as JSON and as a table |
+//! | [`columns`] | a candidate beside several examples |
 //! | [`held_out`] | the part that is compared with |
 //! | [`comparison`] | a candidate against an example: windows, floor, result |
 //! | [`copying`] | how much of a city stands in its example |
@@ -22,6 +23,7 @@
 //! | [`nets`] | streets by rule, with and without a city: what a scale must put in order |
 //! | [`yardstick_table`] | the table that shows whether it does |
 
+pub mod columns;
 pub mod comparison;
 pub mod copying;
 pub mod distance;

@@ -136,7 +136,7 @@ mod tests {
     fn what_the_example_has_is_ordinary_and_what_it_lacks_is_not() {
         let known: Vec<[f64; 2]> =
             (0..100).map(|i| [f64::from(i % 10), f64::from(i / 10)]).collect();
-        let found = judge(&known, &[[4.5, 4.5], [40.0, 4.0]]);
+        let found = judge(&known, &[[4.2, 4.0], [40.0, 4.0]]);
         assert!(found[0].unwrap() < 0.5, "{found:?}");
         assert_eq!(found[1], Some(1.0));
         assert_eq!(judge(&known[..3], &[[1.0, 1.0]]), [None]);

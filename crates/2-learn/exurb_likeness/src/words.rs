@@ -58,7 +58,7 @@ const TABLE: [Row; 49] = [
     ("detour_150_500m", "Ways to places 150 to 500 m away", ROUNDABOUT, DIRECT, STRAIGHT_LINE, false),
     ("detour_500_1200m", "Ways to places 500 to 1200 m away", ROUNDABOUT, DIRECT, STRAIGHT_LINE, false),
     ("meshedness_1km", "The networks of neighbourhoods", "have more loops", "have fewer loops, more like a tree", "", false),
-    ("betweenness_local", "Through traffic of junctions", "is spread more evenly", "gathers at fewer of them", "", false),
+    ("betweenness_local", "Amounts of through traffic at junctions", "are spread more evenly", "are gathered at fewer of them", "", false),
     ("natural_street_length", "Streets that go on straight through junctions", "are longer", "are shorter", "m", true),
     ("patch_c2st_auc", PATCHES, "are told apart", "are told apart", "", false),
     ("patch_kid", PATCHES, "look different", "look different", "", false),

@@ -4,6 +4,7 @@
 //! Every city's densest 5 km square is cut in two; the west part is the example, the east part is
 //! held out, the other cities' west parts are the floor.
 
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 use exurb_city::{City, Part, StreetGraph};
@@ -22,10 +23,11 @@ impl Table {
     /// Both tables as text.
     pub fn to_text(&self) -> String {
         let figure = |v: Option<f64>| v.map_or("-".to_owned(), |v| format!("{v:.2}"));
-        let mut out = format!("{:<24} {:>8} {:>8} {:>8}\n", "measure", "ceiling", "floor", "grid");
+        let mut out =
+            format!("{:<24} {:>8} {:>8} {:>8} {:>8}\n", "measure", "ceiling", "floor", "grid", "P");
         for d in &self.distances {
-            let [ceiling, floor, grid] = [d.ceiling, d.floor, d.grid].map(figure);
-            out += &format!("{:<24} {ceiling:>8} {floor:>8} {grid:>8}\n", d.measure);
+            let [ceiling, floor, grid, p] = [d.ceiling, d.floor, d.grid, d.farther].map(figure);
+            out += &format!("{:<24} {ceiling:>8} {floor:>8} {grid:>8} {p:>8}\n", d.measure);
         }
         let families: Vec<&str> = Family::STREETS.iter().map(|f| f.name()).collect();
         out += &format!(
@@ -78,6 +80,9 @@ pub struct Distances {
     pub floor: Option<f64>,
     /// Of a square grid of equal street density.
     pub grid: Option<f64>,
+    /// P: the chance that another city lies farther off than the city's own other part, 0.5 =
+    /// useless, 1 = perfect.
+    pub farther: Option<f64>,
 }
 
 /// The table.
@@ -211,12 +216,24 @@ fn summary(columns: &[Column], names: Vec<String>) -> Table {
         ceiling: mean(columns.iter().filter_map(|c| c.marks[m].ceiling())),
         floor: mean(columns.iter().filter_map(|c| c.marks[m].floor())),
         grid: mean(grids().filter_map(|card| card.measures[m].distance)),
+        farther: mean(columns.iter().flat_map(|c| farther(&c.marks[m]))),
     });
     Table {
         rows,
         distances: distances.collect(),
         informative: names.into_iter().zip(columns.iter().map(|c| c.informative)).collect(),
     }
+}
+
+/// For every other city: does it lie farther off than the city's own part? 1, 0, or 0.5 for a tie.
+fn farther(marks: &Marks) -> Vec<f64> {
+    let Some(own) = marks.ceiling() else { return Vec::new() };
+    let share = |other: &f64| match other.total_cmp(&own) {
+        Ordering::Greater => 1.0,
+        Ordering::Equal => 0.5,
+        Ordering::Less => 0.0,
+    };
+    marks.floors.iter().flatten().map(share).collect()
 }
 
 fn row(candidate: &'static str, cards: Vec<&Scorecard>) -> Row {

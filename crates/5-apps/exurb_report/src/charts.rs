@@ -17,6 +17,8 @@ const WIDTH: f64 = 300.0;
 const HEIGHT: f64 = 110.0;
 /// Bins of a histogram, each smoothed with its neighbours.
 const BINS: usize = 40;
+/// Characters of a long unit.
+const LONG_UNIT: usize = 14;
 /// Blocks drawn of a fingerprint.
 const DOTS: usize = 300;
 
@@ -110,7 +112,10 @@ fn bins(sample: &Sample, low: f64, high: f64) -> Vec<f64> {
 /// Ground line, and the values at both ends and in the middle.
 fn axis(low: f64, high: f64, words: Words) -> String {
     let mut out = format!("<path class=\"axis\" d=\"M0 {HEIGHT}H{WIDTH}\"/>");
-    for (share, anchor) in [(0.0, "start"), (0.5, "middle"), (1.0, "end")] {
+    let places = [(0.0, "start"), (0.5, "middle"), (1.0, "end")];
+    // A long unit takes the room of the middle.
+    let has_room = |share: &f64| *share != 0.5 || words.unit.len() < LONG_UNIT;
+    for (share, anchor) in places.into_iter().filter(|(share, _)| has_room(share)) {
         let value = low + (high - low) * share;
         let value = if words.is_log { trig::pow(10.0, value) } else { value };
         let label = text(&figure(value, if share == 1.0 { words.unit } else { "" }));

@@ -18,7 +18,9 @@ pub fn text(raw: &str) -> String {
 
 /// Two decimals, or a dash.
 pub fn figure(value: Option<f64>) -> String {
-    value.map_or("–".to_owned(), |v| format!("{v:.2}"))
+    // Adding 0 makes -0 a plain 0.
+    let hundredths = |v: f64| (v * 100.0).round() / 100.0 + 0.0;
+    value.map_or("–".to_owned(), |v| format!("{:.2}", hundredths(v)))
 }
 
 /// Hundredths, or a dash.

@@ -52,8 +52,8 @@ pub struct Column<'a> {
 #[error("a map of the report could not be drawn: {0}")]
 pub struct Error(#[from] exurb_plan::Error);
 
-/// The page. O(size of the cities); under 3 MB whatever their size, since maps are pictures of a
-/// fixed number of pixels and charts have a fixed number of points.
+/// The page. O(size of the cities); under 3 MB whatever their size, for up to nine examples: maps are
+/// pictures of a limited number of bytes, and charts have a fixed number of points.
 pub fn to_html(report: &Report) -> Result<String, Error> {
     page::page(report)
 }

@@ -8,29 +8,41 @@ use exurb_measure::network::rectangle;
 use exurb_plan::Options;
 
 use crate::html::text;
-use crate::{Error, Report};
+use crate::{Column, Error, Report};
 
-/// Pixels of all maps of a page together, so that it stays small.
+/// Pixels of all maps of a page together; a quarter less is tried until they are no more than so many
+/// bytes.
 const ALL_PIXELS: f64 = 1.5e6;
+const MOST_BYTES: usize = 1_900_000;
+const LESS: f64 = 0.75;
+/// Pixels of a map are not made fewer than this.
+const LEAST_PIXELS: f64 = 1e4;
 /// A map is at most this wide.
 const MOST_WIDTH_PX: f64 = 900.0;
 
-/// The candidate, then of every example its part and its held-out part.
+/// A row for every example: the candidate, the example's part, its held-out part, at one scale.
 pub fn maps(report: &Report) -> Result<String, Error> {
-    let Some(first) = report.columns.first() else { return Ok(String::new()) };
-    let candidate =
-        ("the new city".to_owned(), report.candidate, first.likeness.candidate.network.window);
-    let mut shown = vec![candidate];
-    for column in report.columns {
-        let name = text(&column.document.example);
-        let part = column.reference.part.network.window;
-        shown.push((format!("{name}: the example"), column.example, part));
-        let unseen = column.reference.held_out.window;
-        shown.push((format!("{name}: its unseen part"), column.held_out, unseen));
+    let mut each = ALL_PIXELS / (3 * report.columns.len().max(1)) as f64;
+    loop {
+        let rows = report.columns.iter().map(|column| row(report.candidate, column, each));
+        let maps: String = rows.collect::<Result<_, _>>()?;
+        if maps.len() <= MOST_BYTES || each < LEAST_PIXELS {
+            return Ok(maps);
+        }
+        each *= LESS;
     }
-    let size = first.reference.size;
-    let each = ALL_PIXELS / shown.len() as f64;
-    let width_px = (each * size.x / size.y).sqrt().clamp(16.0, MOST_WIDTH_PX) as u32;
+}
+
+fn row(candidate: &City, column: &Column, pixels: f64) -> Result<String, Error> {
+    let reference = column.reference;
+    let name = text(&column.document.example);
+    let shown = [
+        ("the new city".to_owned(), candidate, column.likeness.candidate.network.window),
+        (format!("{name}: the example"), column.example, reference.part.network.window),
+        (format!("{name}: its unseen part"), column.held_out, reference.held_out.window),
+    ];
+    let size = reference.size;
+    let width_px = (pixels * size.x / size.y).sqrt().clamp(16.0, MOST_WIDTH_PX) as u32;
     let mut out = "<div class=\"maps\">\n".to_owned();
     for (title, city, window) in shown {
         let data = picture(city, window, width_px)?;

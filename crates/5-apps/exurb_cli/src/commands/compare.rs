@@ -8,7 +8,7 @@ use exurb_geom::GridPoint;
 use exurb_gis::theme::{GeometryType, Theme, ThemeRow};
 use exurb_likeness::comparison::{common_size, split};
 use exurb_likeness::{
-    Document, Floor, Panel, Place, Reference, unlikely, windows, yardstick_table,
+    Document, Floor, Panel, Place, Reference, columns, unlikely, windows, yardstick_table,
 };
 use exurb_measure::{Info, Network};
 use exurb_operation::Run;
@@ -33,7 +33,8 @@ struct Options {
     #[arg(long, required_unless_present = "yardstick", value_name = "EXAMPLE")]
     with: Vec<PathBuf>,
     /// Part of the example that the city was not made from, one for each example [default: the east
-    /// half of the example's densest square, its west half standing for the example]
+    /// half of the example's densest square, its west half standing for the example; of a strip from
+    /// north to south the south half]
     #[arg(long, value_name = "CITY")]
     held_out: Vec<PathBuf>,
     /// Other cities, whose mean distance scores 0 [default: a built-in panel of nine cities]
@@ -230,6 +231,11 @@ fn to_json(candidate: &City, documents: &[Document], info: &Info) -> Value {
 
 fn to_text(candidate: &City, documents: &[Document], info: &Info) -> String {
     let mut out = String::new();
+    if documents.len() > 1 {
+        out = format!("{} beside its examples\n", candidate.metadata.name);
+        out += &columns::side_by_side(documents);
+        out.push('\n');
+    }
     for document in documents {
         out += &format!("{} compared with {}\n", candidate.metadata.name, document.example);
         out += &document.to_text();

@@ -1,6 +1,7 @@
 //! The `exurb` command as its users see it: what it prints, what it writes, how it ends.
 #![allow(clippy::unwrap_used, reason = "these are tests")]
 
+mod compare;
 mod demo;
 mod files;
 mod recipes;

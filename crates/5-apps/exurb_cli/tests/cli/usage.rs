@@ -20,13 +20,14 @@ fn help_lists_the_commands_that_are_there_and_no_others() {
         "buildings",
         "export",
         "render",
+        "compare",
         "learn",
         "schema",
         "completions",
     ] {
         assert!(help.contains(&format!("\n  {command} ")), "{command} is missing in {help}");
     }
-    for later in ["compare", "imagery", "studio"] {
+    for later in ["imagery", "studio"] {
         assert!(!help.contains(later), "{later}");
     }
     assert!(exurb(folder.path(), &["--version"]).ends(0).out.starts_with("exurb 0."));
