@@ -10,6 +10,7 @@
 //! | `arrows` | crates use only what stands below them |
 //! | `maps` | grows a city from every shared map and writes docs/maps.md |
 //! | `likeness [OPTION ...]` | scores what is grown from every shared map; `--inside` tunes |
+//! | `gallery [FIGURE]` | makes the pictures of docs/gallery |
 //! | `panel` | measures the built-in panel of `exurb compare` anew |
 //! | `licences` | every dependency has a licence on the list |
 //!
@@ -21,6 +22,7 @@ mod arrows;
 mod bench;
 mod check;
 mod fuzz;
+mod gallery;
 mod licences;
 mod likeness;
 mod maps;
@@ -33,7 +35,7 @@ use std::process::ExitCode;
 
 const USAGE: &str = "usage: cargo xtask check | test | bless | bench [STAGE] | \
                      fuzz [TARGET] [SECONDS] | maps | likeness [OPTION ...] | panel | \
-                     arrows | licences";
+                     gallery [FIGURE] | arrows | licences";
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
@@ -47,6 +49,8 @@ fn main() -> ExitCode {
         ["fuzz", ref rest @ ..] => fuzz::run(rest),
         ["maps"] => maps::run(),
         ["likeness", ref options @ ..] => likeness::run(options),
+        ["gallery"] => gallery::run(None),
+        ["gallery", figure] => gallery::run(Some(figure)),
         ["panel"] => likeness::panel(),
         ["arrows"] => arrows::run(),
         ["licences"] => licences::run(),
