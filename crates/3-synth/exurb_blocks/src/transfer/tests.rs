@@ -38,10 +38,11 @@ fn town(style: Style, name: &str) -> City {
     city
 }
 
-fn run<O: Operation>(city: &City, examples: &[City], params: Value) -> Result<City, Failure>
-where
-    O: 'static,
-{
+fn run<O: Operation + 'static>(
+    city: &City,
+    examples: &[City],
+    params: Value,
+) -> Result<City, Failure> {
     let examples: Vec<Example> = examples.iter().cloned().map(Example::new).collect();
     let made = erase::<O>().run(city, &Scope::All, &examples, params, &Run::new(1))?;
     Ok(made.city)
@@ -164,7 +165,7 @@ fn a_style_map_says_which_example_serves_where() {
 fn alternatives_are_other_fillings_of_the_same_block() {
     let mut example = town(Style::Detached, "mixed");
     // No two blocks alike: one house after the other goes.
-    let keep = |b: &Building| b.id % (b.block + 2) != 0;
+    let keep = |b: &Building| !b.id.is_multiple_of(b.block + 2);
     example.buildings = Arc::new(example.buildings.iter().filter(|b| keep(b)).cloned().collect());
     let example = housed(example);
     // Of no block in the example.
