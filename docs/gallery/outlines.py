@@ -18,7 +18,7 @@ HERE = pathlib.Path(__file__).parent
 EXURB = sys.argv[1]
 # Half the width of the street around a block, in metres.
 HALF = 3.0
-MARGIN = 60.0
+MARGIN = 42.0
 
 
 def export(source, folder, name):
@@ -81,11 +81,16 @@ def cut(source, number, name, folder):
             features.append(feature("building", {"type": "Polygon", "coordinates": ring}, **known))
     x0, y0, x1, y1 = outline.bounds
     (w, s), (e, n) = frame.world([(x0 - MARGIN, y0 - MARGIN), (x1 + MARGIN, y1 + MARGIN)])
-    path = HERE / "blocks" / f"{name}.geojson"
-    write(path, features, city, bbox=[w, s, e, n])
-    again = export(path, folder, f"{name}-block")
+    drawn = folder / f"{name}-drawn.geojson"
+    write(drawn, features, city)
+    again = export(drawn, folder, f"{name}-block")
+    for target in elements(again, "target"):
+        target["geometry"]["coordinates"] = [[[w, s], [e, s], [e, n], [w, n], [w, s]]]
+    again["bbox"] = [w, s, e, n]
+    again["exurb_attribution"] = city["exurb_attribution"]
+    text = json.dumps(again, separators=(",", ":")).replace('{"type":"Feature"', '\n{"type":"Feature"')
+    (HERE / "blocks" / f"{name}.geojson").write_text(text + "\n")
     kerb = max(elements(again, "block"), key=lambda f: f["properties"]["area"])
-    print(f"{name}: --bbox {w},{s},{e},{n}")
     ring = frame.local(kerb["geometry"]["coordinates"][0])[:-1]
     return frame, ring, city, kerb["properties"]["id"]
 
