@@ -1,7 +1,8 @@
 //! `gallery`: makes the pictures of docs/gallery from the list in `docs/gallery/gallery.toml`, and the
 //! page that shows them.
 //!
-//! A picture is a list of command lines for `exurb`, the last of which writes it. `{here}` is the folder
+//! A picture is a list of command lines for `exurb`, or for `python3` where they begin so, the last of
+//! which writes it. `{here}` is the folder
 //! of the list, `{recipes}` the recipes of the repository, `{data}` the built-in example cities,
 //! `{shared}` the real maps beside the repository, `{out}` a fresh folder that the pictures of one figure
 //! share, `{picture}` the picture. Without the real maps pictures that need them are skipped, aloud.
@@ -138,8 +139,13 @@ fn exurb(line: &str, out: &Path, picture: &Path) -> Outcome {
             word.replace(name, &path.display().to_string())
         })
     };
-    let mut command = Command::new(target().join("release/exurb"));
-    command.args(line.split_whitespace().map(filled)).arg("--quiet");
+    let mut words = line.split_whitespace().map(filled).peekable();
+    let mut command = match words.next_if(|word| word == "python3") {
+        Some(python) => Command::new(python),
+        None => Command::new(target().join("release/exurb")),
+    };
+    let is_python = command.get_program() == "python3";
+    command.args(words).args((!is_python).then_some("--quiet"));
     output_of(&mut command).map(|_| ()).map_err(|e| format!("{line}: {e}"))
 }
 

@@ -14,7 +14,7 @@ use super::params::Params;
 /// Land uses that streets leave alone; paths drawn there are given streets.
 const KEPT: [&str; 2] = ["park", "cemetery"];
 /// Places along a street that are looked at, in metres.
-const STEP_M: f64 = 8.0;
+const STEP_M: f64 = 4.0;
 /// The grade of a street is that over this length, in metres.
 const GRADE_OVER_M: f64 = 32.0;
 /// Streets keep this far from water to both sides, in metres.
@@ -32,6 +32,14 @@ pub struct Relief {
     parks: Option<Land>,
     most_slope: f64,
     most_grade: f64,
+}
+
+/// Areas of the parameters that streets leave alone.
+pub fn parks(params: &Params) -> impl Iterator<Item = Area> + '_ {
+    let parks = params.areas.areas().iter().filter(|area| KEPT.contains(&&*area.usage));
+    parks.filter_map(|area| {
+        Some(Area { id: 0, polygon: area.polygon()?, class: area.usage.as_str().into() })
+    })
 }
 
 /// What the ground says to a street.
@@ -54,7 +62,8 @@ impl Relief {
         let land = (land.has_terrain() || land.has_water()).then_some(land);
         let mut kept = City::empty(city.frame.clone(), city.target.clone());
         let is_kept = |area: &&Area| KEPT.contains(&&*area.class);
-        kept.water = Arc::new(city.land_use.iter().filter(is_kept).cloned().collect());
+        let known = city.land_use.iter().filter(is_kept).cloned();
+        kept.water = Arc::new(known.chain(parks(params)).collect());
         let parks = (!kept.water.is_empty()).then(|| Land::of(&kept));
         Self { land, parks, most_slope: params.slope, most_grade: params.grade }
     }
@@ -113,10 +122,9 @@ impl Relief {
         let heights: Vec<f64> = places.iter().map(|p| land.height_m(*p)).collect();
         let steps = ((GRADE_OVER_M / STEP_M) as usize).min(count);
         let step_m = total / count as f64 * steps as f64;
-        let too_steep = heights
-            .windows(steps + 1)
-            .any(|w| (w[steps] - w[0]).abs() > self.most_grade * step_m.max(GRADE_OVER_M / 2.0))
-            || places.iter().any(|p| land.slope(*p) > self.most_slope);
+        let too_steep = heights.windows(steps + 1).any(|w| {
+            (w[steps] - w[0]).abs() > 0.9 * self.most_grade * step_m.max(GRADE_OVER_M / 2.0)
+        }) || places.iter().any(|p| land.slope(*p) > self.most_slope);
         if too_steep { Verdict::Steep } else { Verdict::Fine }
     }
 
