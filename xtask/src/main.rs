@@ -11,6 +11,7 @@
 //! | `maps` | grows a city from every shared map and writes docs/maps.md |
 //! | `likeness [OPTION ...]` | scores what is grown from every shared map; `--inside` tunes |
 //! | `yardstick` | makes the table anew that shows whether the scale of likeness behaves |
+//! | `gallery [FIGURE]` | makes the pictures of docs/gallery |
 //! | `panel` | measures the built-in panel of `exurb compare` anew |
 //! | `licences` | every dependency has a licence on the list |
 //!
@@ -22,6 +23,7 @@ mod arrows;
 mod bench;
 mod check;
 mod fuzz;
+mod gallery;
 mod licences;
 mod likeness;
 mod maps;
@@ -34,7 +36,7 @@ use std::process::ExitCode;
 
 const USAGE: &str = "usage: cargo xtask check | test | bless | bench [STAGE] | \
                      fuzz [TARGET] [SECONDS] | maps | likeness [OPTION ...] | yardstick | panel | \
-                     arrows | licences";
+                     gallery [FIGURE] | arrows | licences";
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
@@ -49,6 +51,8 @@ fn main() -> ExitCode {
         ["maps"] => maps::run(),
         ["likeness", ref options @ ..] => likeness::run(options),
         ["yardstick"] => likeness::yardstick(),
+        ["gallery"] => gallery::run(None),
+        ["gallery", figure] => gallery::run(Some(figure)),
         ["panel"] => likeness::panel(),
         ["arrows"] => arrows::run(),
         ["licences"] => licences::run(),

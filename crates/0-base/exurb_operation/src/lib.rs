@@ -8,7 +8,7 @@
 //! |---|---|
 //! | [`Operation`], [`AnyOperation`] | the trait, and the same without its types |
 //! | [`Params`], [`params`] | parameters: defaults, ranges, units, docs, defined once |
-//! | [`PolygonFile`] | a parameter whose value lies in a file |
+//! | [`PolygonFile`], [`DomainsFile`], [`StyleMap`] | parameters whose values lie in files |
 //! | [`Run`] | seeded streams, progress, cancel, warnings |
 //! | [`rng`] | one stream of random numbers for each operation and element |
 //! | [`Card`] | what an operation is called and where it comes from |
@@ -22,7 +22,7 @@ pub mod params;
 pub mod rng;
 mod run;
 
-pub use attachment::PolygonFile;
+pub use attachment::{Domain, DomainsFile, PolygonFile, StyleArea, StyleMap};
 pub use card::Card;
 pub use failure::Failure;
 pub use operation::{AnyOperation, Example, Operation, Outcome, Scope, Seconds, erase};

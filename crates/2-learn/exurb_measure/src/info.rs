@@ -11,6 +11,8 @@ use exurb_city::{BlockClass, City, Role, street_graph};
 use exurb_geom::{Frame, GridPoint, polyline};
 use serde::{Deserialize, Serialize};
 
+use crate::on_land::{OnLand, on_land};
+
 /// Problems listed at most.
 pub const MOST_PROBLEMS: usize = 100;
 
@@ -69,6 +71,8 @@ pub struct Info {
     pub likeness_gates: BTreeMap<String, GateValue>,
     /// The ground; `None` where it is flat.
     pub terrain: Option<Terrain>,
+    /// Streets on terrain and water; none where there is neither.
+    pub on_land: Option<OnLand>,
     /// Area of the target in km².
     pub area_km2: f64,
     /// Are all laws kept?
@@ -202,6 +206,7 @@ impl Info {
             provenance: provenance(city),
             laws: report.laws.iter().map(|law| (law.name.to_owned(), law_value(law))).collect(),
             likeness_gates: gates.iter().map(|(n, g)| ((*n).to_owned(), gate_value(g))).collect(),
+            on_land: on_land(city),
             terrain: city.terrain.as_ref().map(|terrain| Terrain::of(city, terrain)),
             area_km2: city.area_km2(),
             valid: report.is_valid(),

@@ -39,6 +39,12 @@ fn figures(info: &Info, out: &mut String) {
         let besides = format!("{} ways of {:.1} km", streets.other_ways, streets.other_ways_km);
         line(out, "  besides", format!("{besides}, service roads and the like, not measured"));
     }
+    if let Some(land) = &info.on_land {
+        let steep = |grade: Option<f64>| percent(grade);
+        let (water, grade) = (number(Some(land.in_water_m), 0, " m"), steep(land.steepest_grade));
+        let bridges = number(Some(land.bridge_km), 2, " km");
+        line(out, "  on land", format!("{bridges} of bridges, {water} in water, steepest {grade}"));
+    }
     line(out, "  dead ends", percent(streets.dead_end_share));
     let largest = percent(streets.largest_component_share);
     line(out, "  components", format!("{}, the largest holds {largest}", streets.components));

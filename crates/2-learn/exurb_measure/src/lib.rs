@@ -30,6 +30,7 @@ pub mod moving_windows;
 pub mod natural_streets;
 mod nearest;
 pub mod network;
+mod on_land;
 pub mod parcels;
 pub mod paths;
 pub mod sample;

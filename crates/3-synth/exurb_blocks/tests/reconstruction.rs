@@ -1,14 +1,18 @@
 //! Hartmann 2018, figure 5.7: blocks emptied and filled again from their own city get their buildings
 //! back.
 
+#![allow(clippy::print_stdout, reason = "the figures of docs/blocks.md")]
+
 mod shared;
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
+use exurb_blocks::auto::Auto;
 use exurb_blocks::transfer::Transfer;
-use exurb_city::Building;
+use exurb_city::{BlockClass, Building, City};
 use exurb_geom::{BoxGrid, overlap};
-use exurb_operation::{Example, Run, Scope, erase};
+use exurb_operation::{Example, Operation, Run, Scope, erase};
 
 /// Corners that come back this near are back, in millimetres.
 const NEAR_MM: i32 = 10;
@@ -43,16 +47,32 @@ fn overlapping(buildings: &[&Building]) -> Vec<bool> {
         .collect()
 }
 
+/// The city, its blocks emptied and filled from itself.
+fn refilled<O: Operation + 'static>(city: &City) -> City {
+    let examples = [Example::new(city.clone())];
+    let is_filled =
+        |b: &Building| b.block != 0 && city.blocks[b.block as usize - 1].class == BlockClass::Block;
+    let rest = city.buildings.iter().filter(|b| !is_filled(b)).cloned().collect();
+    let emptied = City { buildings: Arc::new(rest), ..city.clone() };
+    let params = serde_json::Value::Null;
+    let made = erase::<O>().run(&emptied, &Scope::All, &examples, params, &Run::new(1));
+    made.expect("the map has blocks").city
+}
+
+/// Share of all footprints that stand where they stood.
+fn kept(city: &City, made: &City) -> f64 {
+    let boxes = BoxGrid::of(made.buildings.iter().map(|b| &b.polygon));
+    let whole: Vec<&Building> = city.buildings.iter().filter(|b| !b.is_part).collect();
+    let back = whole.iter().filter(|b| is_back(b, &made.buildings, &boxes)).count();
+    back as f64 / whole.len() as f64
+}
+
 #[test]
 fn blocks_filled_from_their_own_city_get_their_buildings_back() {
     let Some(folder) = shared::folder() else { return };
     for name in shared::COMPLETE {
         let city = shared::city(&folder, name);
-        let examples = [Example::new(city.clone())];
-        let operation = erase::<Transfer>();
-        let params = serde_json::Value::Null;
-        let made = operation.run(&city, &Scope::All, &examples, params, &Run::new(1));
-        let made = made.expect("the map has blocks").city;
+        let made = refilled::<Transfer>(&city);
         let whole: Vec<&Building> = city.buildings.iter().filter(|b| !b.is_part).collect();
         let boxes = BoxGrid::of(made.buildings.iter().map(|b| &b.polygon));
         let overlapping = overlapping(&whole);
@@ -82,9 +102,17 @@ fn blocks_filled_from_their_own_city_get_their_buildings_back() {
         }
         let share = f64::from(back) / f64::from(counted);
         let all = f64::from(all_back) / whole.len() as f64;
+        let by_auto = kept(&city, &refilled::<Auto>(&city));
         println!(
-            "{name}: {share:.4} of {counted}, {all:.4} of all {}, missing {missing:?}",
-            whole.len()
+            "| {name} | {counted} | {:.2} | {} | {:.2} | {:.2} | {} |",
+            100.0 * share,
+            whole.len(),
+            100.0 * all,
+            100.0 * by_auto,
+            missing.iter().map(|(why, n)| format!("{n} {why}")).collect::<Vec<_>>().join(", "),
         );
+        assert!(share >= 0.98, "{name}: {share} of {counted}");
+        assert!(all >= 0.95, "{name}: {all} of all");
+        assert!(by_auto >= 0.95, "{name}: {by_auto} of all by auto");
     }
 }

@@ -1,7 +1,8 @@
 //! Files that parameters name: read before a step runs, since operations open none.
 //!
 //! A property whose schema says `x-file` takes a file's name. `polygon` stands for the outline in it, in
-//! the city's frame; `style-map` for areas with the names of examples, or for an image.
+//! the city's frame; `domains` for areas with their uses and examples; `style-map` for areas with the
+//! names of examples, or for an image.
 
 use std::path::{Path, PathBuf};
 
@@ -42,6 +43,7 @@ pub fn read(
                 let polygon = target::read_in_frame(file, frame, folder, run)?;
                 json!({ "polygon": rings(&polygon) })
             }
+            "domains" => domains(&open::locate(file, folder)?, frame)?,
             _ if is_png(file) => image(&open::locate(file, folder)?)?,
             _ => areas(&open::locate(file, folder)?, frame)?,
         };
@@ -71,6 +73,45 @@ fn rings(polygon: &Polygon) -> Vec<Vec<[f64; 2]>> {
 
 /// The polygons of a GeoJSON file with their property `example`.
 fn areas(path: &Path, frame: &Frame) -> Result<Value, Error> {
+    let mut out = Vec::new();
+    for (properties, polygon) in polygons(path, frame)? {
+        let example = properties.get("example").and_then(Value::as_str);
+        let example = example.ok_or_else(|| {
+            let message =
+                "a feature lacks the property `example`, the name of the example that serves there";
+            Error::Input(open::named(path, message))
+        })?;
+        out.push(json!({ "example": example, "polygon": rings(&polygon) }));
+    }
+    Ok(json!({ "areas": out }))
+}
+
+/// The polygons of a GeoJSON file with what they say of growth: `use`, and `example` or `examples`
+/// with weights.
+fn domains(path: &Path, frame: &Frame) -> Result<Value, Error> {
+    let wrong = |message: &str| Error::Input(open::named(path, message));
+    let mut out = Vec::new();
+    for (properties, polygon) in polygons(path, frame)? {
+        let kind = properties.get("use").and_then(Value::as_str).unwrap_or("flat");
+        let examples = match (properties.get("example"), properties.get("examples")) {
+            (Some(Value::String(name)), _) => json!({ name: 1.0 }),
+            (_, Some(Value::Object(weights))) => Value::Object(weights.clone()),
+            (_, Some(Value::Array(names))) => {
+                names.iter().filter_map(Value::as_str).map(|n| (n.to_owned(), json!(1.0))).collect()
+            }
+            (None, None) => json!({}),
+            _ => return Err(wrong("`examples` is neither a list of names nor names with weights")),
+        };
+        out.push(json!({ "use": kind, "examples": examples, "polygon": rings(&polygon) }));
+    }
+    Ok(json!({ "areas": out }))
+}
+
+/// A polygon and the properties that somebody gave it.
+pub type Drawn = (Map<String, Value>, Polygon);
+
+/// The polygons of a GeoJSON file, in the city's frame, with their properties.
+pub fn polygons(path: &Path, frame: &Frame) -> Result<Vec<Drawn>, Error> {
     let wrong = |message: &str| Error::Input(open::named(path, message));
     let text = std::fs::read_to_string(path).map_err(|e| wrong(&format!("cannot be read: {e}")))?;
     let document: Value =
@@ -79,37 +120,76 @@ fn areas(path: &Path, frame: &Frame) -> Result<Value, Error> {
     let features = features.ok_or_else(|| wrong("is no GeoJSON FeatureCollection"))?;
     let mut out = Vec::new();
     for feature in features {
-        let example = feature.pointer("/properties/example").and_then(Value::as_str);
-        let example = example.ok_or_else(|| {
-            wrong(
-                "a feature lacks the property `example`, the name of the example that serves there",
-            )
-        })?;
+        let properties = feature.get("properties").and_then(Value::as_object);
+        let properties = properties.cloned().unwrap_or_default();
         let coordinates = feature.pointer("/geometry/coordinates").and_then(Value::as_array);
-        let polygons = match feature.pointer("/geometry/type").and_then(Value::as_str) {
-            Some("Polygon") => coordinates.map(|c| vec![Value::from(c.clone())]),
-            Some("MultiPolygon") => coordinates.cloned(),
+        let found = match feature.pointer("/geometry/type").and_then(Value::as_str) {
+            Some("Polygon") => coordinates.map(|c| vec![c.clone()]),
+            Some("MultiPolygon") => {
+                coordinates.map(|c| c.iter().filter_map(Value::as_array).cloned().collect())
+            }
             _ => None,
         };
-        let polygons = polygons.ok_or_else(|| wrong("a feature is no Polygon"))?;
-        for polygon in &polygons {
-            let outer = polygon.get(0).and_then(Value::as_array).into_iter().flatten();
-            let ring: Option<Vec<[f64; 2]>> = outer.map(|p| local(p, frame)).collect();
-            let ring = ring.ok_or_else(|| wrong("a coordinate is no place near the city"))?;
-            out.push(json!({ "example": example, "polygon": [ring] }));
+        for polygon in found.ok_or_else(|| wrong("a feature is no Polygon"))? {
+            let ring = |r: &Value| -> Option<Vec<GridPoint>> {
+                r.as_array()?.iter().map(|p| local(p, frame)).collect()
+            };
+            let rings: Option<Vec<Vec<GridPoint>>> = polygon.iter().map(ring).collect();
+            let mut rings = rings.ok_or_else(|| wrong("a coordinate is no place near the city"))?;
+            let outer = if rings.is_empty() { Vec::new() } else { rings.remove(0) };
+            let polygon = Polygon::new(outer, rings);
+            let polygon = polygon.filter(Polygon::is_valid);
+            let message = "a polygon has no area or crosses itself";
+            out.push((properties.clone(), polygon.ok_or_else(|| wrong(message))?));
         }
     }
-    Ok(json!({ "areas": out }))
+    Ok(out)
 }
 
-fn local(position: &Value, frame: &Frame) -> Option<[f64; 2]> {
+fn local(position: &Value, frame: &Frame) -> Option<GridPoint> {
     let place = LonLat { lon: position.get(0)?.as_f64()?, lat: position.get(1)?.as_f64()? };
-    let p = frame.project_to_grid(place)?.to_m();
-    Some([p.x, p.y])
+    frame.project_to_grid(place)
 }
 
-/// Width, height and the colours `0xrrggbb` of an image, row by row from the north-west.
+/// Colours of an image, row by row from the north-west.
+#[derive(Clone, Debug)]
+pub struct Image {
+    width: u32,
+    height: u32,
+    /// `0xrrggbb`.
+    pixels: Vec<u32>,
+}
+
+impl Image {
+    /// The colour at shares of width and height, from the north-west.
+    pub fn color(&self, x: f64, y: f64) -> u32 {
+        let at = |share: f64, size: u32| ((share * f64::from(size)).max(0.0) as u32).min(size - 1);
+        self.pixels[(at(y, self.height) * self.width + at(x, self.width)) as usize]
+    }
+}
+
+/// Is that a PNG image of colours, not of heights?
+pub fn has_colors(path: &Path) -> bool {
+    let decoder =
+        std::fs::File::open(path).ok().map(|f| png::Decoder::new(std::io::BufReader::new(f)));
+    let reader = decoder.and_then(|d| d.read_info().ok());
+    reader.is_some_and(|r| {
+        let info = r.info();
+        info.bit_depth != png::BitDepth::Sixteen
+            && !matches!(
+                info.color_type,
+                png::ColorType::Grayscale | png::ColorType::GrayscaleAlpha
+            )
+    })
+}
+
 fn image(path: &Path) -> Result<Value, Error> {
+    let Image { width, height, pixels } = read_image(path)?;
+    Ok(json!({ "width": width, "height": height, "pixels": pixels }))
+}
+
+/// Reads an image of colours.
+pub fn read_image(path: &Path) -> Result<Image, Error> {
     let wrong = |message: &str| Error::Input(open::named(path, message));
     let file = std::fs::File::open(path).map_err(|e| wrong(&format!("cannot be read: {e}")))?;
     let mut decoder = png::Decoder::new(std::io::BufReader::new(file));
@@ -129,5 +209,8 @@ fn image(path: &Path) -> Result<Value, Error> {
         u32::from(pixel[r]) << 16 | u32::from(pixel[g]) << 8 | u32::from(pixel[b])
     };
     let pixels: Vec<u32> = bytes[..frame.buffer_size()].chunks_exact(samples).map(color).collect();
-    Ok(json!({ "width": frame.width, "height": frame.height, "pixels": pixels }))
+    if pixels.is_empty() {
+        return Err(wrong("is an empty image"));
+    }
+    Ok(Image { width: frame.width, height: frame.height, pixels })
 }

@@ -38,6 +38,7 @@ mod recipe;
 mod registry;
 mod run;
 mod size;
+mod sketch;
 mod target;
 mod terrain;
 #[cfg(test)]

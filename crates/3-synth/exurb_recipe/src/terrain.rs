@@ -7,7 +7,7 @@ use exurb_operation::Run;
 use exurb_terrain::{Dem, Edges, Options};
 use serde::{Deserialize, Serialize};
 
-use crate::{Error, open};
+use crate::{Error, open, sketch};
 
 /// Heights are kept this far around the target, where streets run on.
 const AROUND_M: f64 = 200.0;
@@ -16,7 +16,8 @@ const AROUND_M: f64 = 200.0;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct TerrainSource {
-    /// GeoTIFF, SRTM tile, ASCII grid or 16-bit PNG; or a city file, whose terrain is taken.
+    /// GeoTIFF, SRTM tile, ASCII grid or 16-bit PNG; or a city file, whose terrain is taken; or a
+    /// sketch of land uses, drawn (GeoJSON) or painted (PNG in colours).
     pub file: PathBuf,
     /// Everything up to this height is under water, in metres.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -75,6 +76,9 @@ fn is_default(gaps: &Gaps) -> bool {
 pub fn lay(city: &mut City, source: &TerrainSource, folder: &Path, run: &Run) -> Result<(), Error> {
     let path = open::locate(&source.file, folder)?;
     run.phase(&format!("reading {}", file_name(&source.file)));
+    if sketch::is_sketch(&path) {
+        return sketch::lay(city, &path, AROUND_M, run.seed());
+    }
     let (dem, own_level) = read(&path, source)?;
     let wrong = |message: String| Error::Input(open::named(&path, &message));
     let bounds = city.target.bounds().grown(AROUND_M);

@@ -43,6 +43,11 @@ fn lamp(map: &Map, at: Vec2) -> Option<Mark> {
     disc(map, at, map.view.px(0.7), Paint::fill(map.base(map.sheet.lamp)))
 }
 
+/// Guidance maps and other fillings of a block are no things on the ground: outlines show them.
+fn is_sketch(kind: &str) -> bool {
+    kind == "guidance" || kind.starts_with("alternative_")
+}
+
 fn other(map: &Map, feature: &Feature) -> Option<Mark> {
     match &feature.shape {
         FeatureShape::Point(p) => {
@@ -51,6 +56,10 @@ fn other(map: &Map, feature: &Feature) -> Option<Mark> {
         FeatureShape::Line(line) => {
             let pen = Pen::solid(map.base(map.sheet.building_line), map.hair_px());
             Some(Mark::new(Shape::Line(map.view.line(line)?), Paint::pen(pen)))
+        }
+        FeatureShape::Polygon(polygon) if is_sketch(&feature.kind) => {
+            let pen = Pen::solid(map.base(rgb(0xc0_39_2b)), map.hair_px() * 1.5);
+            Some(Mark::new(map.view.area(polygon)?, Paint::pen(pen)))
         }
         FeatureShape::Polygon(polygon) => {
             let fill = map.base(map.sheet.land_use(&feature.kind)?);

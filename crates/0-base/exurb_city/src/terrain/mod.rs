@@ -13,11 +13,13 @@
 //! | `area` | statistics over polygons: what is missing, mean, lowest |
 //! | `derive` | other terrains: cut out, resampled, gaps filled |
 //! | `lay` | putting a terrain under a city: water, heights of junctions |
+//! | `sketched` | plausible ground for a sketch of land uses |
 
 mod area;
 mod derive;
 mod lay;
 mod sample;
+mod sketched;
 #[cfg(test)]
 mod tests;
 
@@ -26,6 +28,7 @@ use exurb_geom::{Bounds, GridPoint, Vec2};
 
 pub use area::Relief;
 pub use lay::elevate;
+pub use sketched::{SKETCH_CELL_M, SketchedUse, sketched, sketched_areas};
 
 /// Heights beyond this many metres are slips of a file and count as missing.
 const HIGHEST_M: f32 = 20_000.0;

@@ -66,7 +66,11 @@ impl Operation for Auto {
         let cut = parcels::Params { open_land: false, ..parcels::Params::default() };
         let city = Parcels::edit(&city, &rest, &learned.library, &cut, run)?.apply(&city);
         let stand = footprints::Params::default();
-        let city = Footprints::edit(&city, &rest, &learned.library, &stand, run)?.apply(&city);
+        // Slivers have no parcels.
+        let city = match city.parcels.is_empty() {
+            true => city,
+            false => Footprints::edit(&city, &rest, &learned.library, &stand, run)?.apply(&city),
+        };
         Ok(Edit {
             blocks: Some(city.blocks.to_vec()),
             parcels: Some(city.parcels.to_vec()),

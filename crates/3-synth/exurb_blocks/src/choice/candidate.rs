@@ -82,7 +82,8 @@ pub fn tried(
     let motion = align::refine(found.motion, outline, &site.ring);
     let deviation_m = align::deviation_m(&motion, outline, &site.ring);
     let is_same = deviation_m < SAME_M && found.shape_cost < 0.05;
-    let ground = Ground { block: &site.block.polygon, kerb: &site.kerb, standing: &site.standing };
+    let (block, kerb) = (&site.block.polygon, &site.kerb);
+    let ground = Ground { block, kerb, standing: &site.standing, at_home: is_same };
     let spacing = Spacing { pavement_m: choosing.pavement, tolerance: choosing.tolerance };
     let transferred = || {
         let (footprints, things) = layout.wished(motion.into());

@@ -83,6 +83,13 @@ impl Learned {
         })
     }
 
+    /// Names of the examples with layouts, in order.
+    pub fn sources(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = self.database.layouts.iter().map(|l| &*l.source).collect();
+        names.dedup();
+        names
+    }
+
     /// The layout of the very block, where it lies in an example.
     pub fn same(&self, site: &Site<'_>) -> Option<Match> {
         let attributes = Attributes::default();

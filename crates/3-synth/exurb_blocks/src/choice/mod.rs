@@ -13,8 +13,9 @@ pub mod joint;
 pub mod kinds;
 mod learned;
 mod options;
+mod style;
 
-use exurb_city::{Block, City};
+use exurb_city::{Block, City, Terrain};
 use exurb_geom::{BoxGrid, GridPoint, Polygon, overlap, trig};
 use exurb_match::{Attributes, Match, Query};
 use exurb_operation::{Failure, Rng, Run, rng};
@@ -24,7 +25,9 @@ use rayon::prelude::*;
 pub use candidate::{Candidate, Site, Way};
 pub use learned::Learned;
 pub use options::Choosing;
+pub use style::Styles;
 
+use crate::database::{Layout, relief_m};
 use crate::library::{OpenLand, Surroundings};
 use crate::neighbours::{MainStreets, neighbours};
 use crate::retarget::Settings;
@@ -81,6 +84,15 @@ pub fn choose(
     ways: &Ways,
     run: &Run,
 ) -> Result<Vec<Choice>, Failure> {
+    let styles = Styles::of(
+        &choosing.style_map,
+        &choosing.style_legend,
+        city.target.bounds(),
+        &learned.sources(),
+    );
+    let styles =
+        styles.map_err(|message| Failure::Params { operation: "blocks".into(), message })?;
+    let serving = |block: &Block| styles.at(block.polygon.interior_point());
     let open = OpenLand::of(city);
     let standing = Standing::of(city, blocks, wanted);
     let site =
@@ -88,7 +100,7 @@ pub fn choose(
     let mut sites: Vec<Option<Site<'_>>> = (0..blocks.len()).into_par_iter().map(site).collect();
     run.check()?;
     let same: Vec<Option<Match>> =
-        sites.par_iter().map(|site| site.as_ref().and_then(|s| learned.same(s))).collect();
+        sites.par_iter().map(|site| same(site.as_ref()?, learned, serving)).collect();
     // A block that lies in an example as it is takes after it, park or not.
     let given = |(block, same): (&Block, &Option<Match>)| {
         let share = if same.is_none() { open.share(&block.polygon) } else { None };
@@ -118,6 +130,7 @@ pub fn choose(
                     (field.coverage[i], field.height_m[i]),
                     learned,
                     choosing,
+                    (serving(site.block), city.terrain.as_deref()),
                 ),
             };
             let tries = found.iter().take(choosing.tries.max(choosing.alternatives) as usize);
@@ -171,6 +184,17 @@ impl<'a> Standing<'a> {
     }
 }
 
+/// The layout of the very block, unless another example is to serve there.
+fn same<'a>(
+    site: &Site<'_>,
+    learned: &Learned,
+    serving: impl Fn(&Block) -> Option<&'a str>,
+) -> Option<Match> {
+    let found = learned.same(site)?;
+    let source = &*learned.database.layouts[found.entry as usize].source;
+    serving(site.block).is_none_or(|name| name == source).then_some(found)
+}
+
 /// Like blocks for a site, best first.
 fn asked(
     site: &Site<'_>,
@@ -178,12 +202,13 @@ fn asked(
     (coverage, height_m): (f64, Option<f64>),
     learned: &Learned,
     choosing: &Choosing,
+    (serving, terrain): (Option<&str>, Option<&Terrain>),
 ) -> Vec<Match> {
     let attributes = Attributes {
         density: kind.is_none().then_some(coverage),
         height_m: height_m.filter(|_| kind.is_none()),
         land_use: site.block.land_use.clone(),
-        relief_m: None,
+        relief_m: terrain.and_then(|t| relief_m(t, site.outline.points())),
     };
     let query = Query {
         weights: choosing.weights(),
@@ -191,8 +216,9 @@ fn asked(
         mirrored: choosing.mirrored,
         ..Query::new(&site.outline, &attributes)
     };
-    let of_kind = learned.database.query(&query, |l| l.kind == *kind);
-    if of_kind.is_empty() { learned.database.query(&query, |_| true) } else { of_kind }
+    let serves = |l: &Layout| serving.is_none_or(|name| name == &*l.source);
+    let of_kind = learned.database.query(&query, |l| l.kind == *kind && serves(l));
+    if of_kind.is_empty() { learned.database.query(&query, serves) } else { of_kind }
 }
 
 /// What lies around blocks.

@@ -23,6 +23,13 @@ pub struct Choosing {
     pub coherence: f64,
     /// Draw parks, schools and shops as often and as far apart as in the example.
     pub kinds: bool,
+    /// Which example serves where: polygons with the property `example`, or a PNG image over the
+    /// target's box (see `style_legend`). Elsewhere all examples serve.
+    #[schemars(extend("x-value-name" = "MAP.geojson|.png"))]
+    pub style_map: exurb_operation::StyleMap,
+    /// What the colours of an image mean, as in `ff0000=munich,00ff00=helsinki`; a pixel counts as the
+    /// nearest of these colours.
+    pub style_legend: String,
     /// Let example blocks be mirrored.
     pub mirrored: bool,
     /// Weight of the outline's shape when blocks are compared; all weights are brought to a sum of 1.
@@ -62,6 +69,8 @@ impl Default for Choosing {
             alternatives: 1,
             coherence: 1.0,
             kinds: true,
+            style_map: exurb_operation::StyleMap::default(),
+            style_legend: String::new(),
             mirrored: false,
             shape_weight: 0.7,
             relief_weight: 0.1,

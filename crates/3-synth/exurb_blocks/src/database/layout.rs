@@ -2,7 +2,9 @@ use std::sync::Arc;
 
 use exurb_city::{Block, BlockClass, Building, City, Feature};
 use exurb_geom::{BoxGrid, GridPoint, Polygon, Rigid};
+use exurb_match::Outline;
 
+use super::relief_m;
 use super::tidy::tidied;
 use crate::kerb::Kerb;
 use crate::library::{Features, OpenLand};
@@ -40,6 +42,8 @@ pub struct Layout {
     pub coverage: f64,
     /// Mean height of the buildings by footprint, in metres, where known.
     pub height_m: Option<f64>,
+    /// Heights of the ground at the samples of the outline, in metres, where known.
+    pub relief_m: Option<Vec<f64>>,
 }
 
 /// A building of a layout.
@@ -99,12 +103,14 @@ fn layout(
         return None;
     }
     let (footprints, flaws) = footprints(city, block, &home.buildings, open);
+    let outline = plain_outline(&block.polygon);
     let mut layout = Layout {
         source: city.metadata.name.clone(),
         id: block.id,
         weight,
         kerb: block.polygon.clone(),
-        outline: plain_outline(&block.polygon),
+        relief_m: city.terrain.as_deref().and_then(|t| relief_m(t, Outline::of(&outline).points())),
+        outline,
         features,
         open: None,
         land_use: block.land_use.clone(),

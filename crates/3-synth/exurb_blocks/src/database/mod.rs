@@ -8,7 +8,7 @@ mod kind;
 mod layout;
 mod tidy;
 
-use exurb_city::{Block, City, FeatureShape, block};
+use exurb_city::{Block, City, FeatureShape, Terrain, block};
 use exurb_geom::Vec2;
 use exurb_match::{Attributes, Database, Entry, Match, Outline, Query, Weights};
 use exurb_operation::{Example, Failure, Run};
@@ -74,11 +74,16 @@ fn layouts_of(city: &City, weight: f64) -> Vec<Layout> {
 
 fn attributes(layout: &Layout) -> Attributes {
     Attributes {
-        relief_m: None,
+        relief_m: layout.relief_m.clone(),
         land_use: layout.land_use.clone(),
         density: Some(layout.coverage),
         height_m: layout.height_m,
     }
+}
+
+/// Heights of the ground at points; `None` where one is not known.
+pub fn relief_m(terrain: &Terrain, points: &[Vec2]) -> Option<Vec<f64>> {
+    points.iter().map(|p| terrain.height_m(*p)).collect()
 }
 
 /// The weights of a query by shape alone.

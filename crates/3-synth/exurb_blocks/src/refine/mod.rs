@@ -30,6 +30,9 @@ pub struct Ground<'a> {
     pub kerb: &'a Kerb,
     /// What stands there and stays.
     pub standing: &'a [Polygon],
+    /// Do the bodies stand where they stood in the example? Then none is pushed by another: what is in
+    /// the way of something is trimmed or dropped.
+    pub at_home: bool,
 }
 
 /// A footprint where it is wished for.
@@ -88,7 +91,10 @@ pub fn refine(ground: &Ground<'_>, bodies: &[Body], tolerance: f64) -> Vec<Fate>
         return fates;
     }
     let present: Vec<bool> = fates.iter().map(|f| *f == Fate::Stays).collect();
-    let moved = solve::solve(ground, bodies, count, &present, &conflicted, tolerance);
+    let moved = match ground.at_home {
+        true => conflicted.iter().zip(bodies).map(|(c, b)| c.then(|| b.polygon.clone())).collect(),
+        false => solve::solve(ground, bodies, count, &present, &conflicted, tolerance),
+    };
     settle(ground, bodies, moved, tolerance, &mut fates);
     fates.truncate(count);
     fates

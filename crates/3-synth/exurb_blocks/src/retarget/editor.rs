@@ -36,7 +36,7 @@ impl<'a> Editor<'a> {
         let footprints = wishes(self.layout, &placed);
         let things = things(self.layout, &self.source, &placed, outline, &ring, &link);
         let kerb = Kerb::of(outline);
-        let ground = Ground { block: outline, kerb: &kerb, standing: &[] };
+        let ground = Ground { block: outline, kerb: &kerb, standing: &[], at_home: false };
         lay(self.layout, &footprints, &things, &ground, &open.near(outline), self.spacing)
     }
 

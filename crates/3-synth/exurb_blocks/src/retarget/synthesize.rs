@@ -105,6 +105,7 @@ impl Source {
         let guidance = Guidance::new(&self.ring, &target, domain, link);
         let mut work =
             Work { source: self, guidance, settings, placed: Vec::new(), bodies: Vec::new() };
+        work.keep();
         let mut tracks = work.tracks(&target);
         tracks.sort_by_key(|track| std::cmp::Reverse(track.pool.len()));
         for track in &tracks {
@@ -280,10 +281,33 @@ impl<'a> Work<'a> {
         self.placed.push(Placement { members, motion });
     }
 
+    /// What the map leaves where it is, to the rounding of a step, stays there: what is laid out beside it
+    /// finds it standing.
+    fn keep(&mut self) {
+        let near_m = self.settings.step / 2.0;
+        let stays = |i: &usize| {
+            let mut corners = self.source.polygons[*i].exterior().iter().map(|p| p.to_m());
+            corners.all(|p| self.guidance.point(p).distance(p) <= near_m)
+        };
+        let stay: Vec<bool> = (0..self.source.polygons.len()).map(|i| stays(&i)).collect();
+        let mut kept = vec![false; stay.len()];
+        let groups = self.source.groups.groups.iter().flat_map(|g| &g.elements);
+        let elements = groups.map(|e| e.members.clone());
+        for members in elements.chain(self.source.groups.singles.iter().map(|i| vec![*i])) {
+            if members.iter().all(|i| stay[*i] && !kept[*i]) {
+                members.iter().for_each(|i| kept[*i] = true);
+                self.put(members, Rigid::IDENTITY.into());
+            }
+        }
+    }
+
     /// What belongs to no group goes where the map takes it, turned as the map turns it; refinement parts
     /// it from what stands there.
     fn place_singles(&mut self) {
         for &i in &self.source.groups.singles {
+            if self.placed.iter().any(|p| p.members.contains(&i)) {
+                continue;
+            }
             let ring = exurb_geom::polyline::to_m(self.source.polygons[i].exterior());
             let Some(image) = self.guidance.ring(&ring) else { continue };
             let motion = Rigid::fit(ring.iter().zip(&image).map(|(p, q)| (*p, *q, 1.0)));

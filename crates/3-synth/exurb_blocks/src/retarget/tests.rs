@@ -46,3 +46,74 @@ fn an_undeformed_layout_comes_back() {
     }
     assert!(seen.iter().all(|n| *n == 1), "{seen:?}");
 }
+
+fn placed(outline: &[(f64, f64)], settings: &Settings) -> Vec<super::Placement> {
+    let (old, houses) = block();
+    let outline = ring(outline);
+    let source = Source::of(&old, houses, &[], settings);
+    let domain = Polygon::new(outline.clone(), vec![]).expect("has area");
+    let link = Correspondence::by_vertices(&old, &outline)
+        .unwrap_or_else(|| Correspondence::by_shape(&old, &outline));
+    source.retarget(&domain, &outline, &link, settings)
+}
+
+fn uses(placed: &[super::Placement], of: std::ops::Range<usize>) -> usize {
+    placed.iter().flat_map(|p| &p.members).filter(|m| of.contains(m)).count()
+}
+
+/// Numbers of the row below and of the houses above in [`block`].
+const ROW: std::ops::Range<usize> = 0..9;
+const HOUSES: std::ops::Range<usize> = 11..16;
+
+#[test]
+fn a_longer_block_repeats_and_a_shorter_one_drops() {
+    let settings = Settings::default();
+    let long = placed(&[(0., 0.), (200., 0.), (200., 70.), (0., 70.)], &settings);
+    assert!(uses(&long, ROW) >= 14, "{}", uses(&long, ROW));
+    assert!(uses(&long, HOUSES) >= 7, "{}", uses(&long, HOUSES));
+    let short = placed(&[(0., 0.), (80., 0.), (80., 70.), (0., 70.)], &settings);
+    assert!((3..=6).contains(&uses(&short, ROW)), "{}", uses(&short, ROW));
+}
+
+#[test]
+fn empty_space_goes_before_buildings() {
+    // The upper side loses 20 of 120 m; its five houses take 50.
+    let settings = Settings::default();
+    let shorter = placed(&[(0., 0.), (120., 0.), (110., 70.), (10., 70.)], &settings);
+    assert_eq!(uses(&shorter, HOUSES), 5);
+}
+
+#[test]
+fn sides_whose_ends_stay_keep_their_layout_where_asked() {
+    let settings = Settings { local: true, ..Settings::default() };
+    let (_, houses) = block();
+    // The upper side is drawn out; the lower one stays.
+    let drawn = placed(&[(0., 0.), (120., 0.), (150., 90.), (-20., 90.)], &settings);
+    for placement in drawn.iter().filter(|p| p.members.iter().any(|m| ROW.contains(m))) {
+        let at = houses[placement.members[0]].centroid();
+        assert!(placement.motion.apply(at).distance(at) < 0.01, "{:?}", placement.members);
+    }
+    assert_eq!(uses(&drawn, ROW), 9);
+}
+
+/// Figure 1b of the paper: an office floor. Rooms share walls along a corridor.
+#[test]
+fn a_floor_plan_is_laid_out_anew() {
+    let outline = ring(&[(0., 0.), (40., 0.), (40., 14.), (0., 14.)]);
+    let mut rooms: Vec<Polygon> = (0..8).map(|k| house(5.0 * f64::from(k), 0., 5., 6.)).collect();
+    rooms.extend((0..8).map(|k| house(5.0 * f64::from(k), 8., 5., 6.)));
+    let settings = Settings { reach: 7.0, fit_whole: false, ..Settings::default() };
+    let source = Source::of(&outline, rooms.clone(), &[], &settings);
+    let longer = ring(&[(0., 0.), (60., 0.), (60., 14.), (0., 14.)]);
+    let domain = Polygon::new(longer.clone(), vec![]).expect("has area");
+    let link = Correspondence::by_vertices(&outline, &longer).expect("vertices stayed");
+    let placed = source.retarget(&domain, &longer, &link, &settings);
+    let count: usize = placed.iter().map(|p| p.members.len()).sum();
+    assert!((22..=24).contains(&count), "{count} rooms");
+    let covered: f64 = placed
+        .iter()
+        .flat_map(|p| p.members.iter().filter_map(|m| p.motion.apply_polygon(&rooms[*m])))
+        .map(|room| room.area_m2())
+        .sum();
+    assert!((covered / (60.0 * 12.0) - 1.0).abs() < 0.1, "{covered}");
+}

@@ -19,7 +19,6 @@ use super::ground::Ground;
 use super::growth::{Growth, Open, Place};
 use super::layer::NodeKind;
 use super::network::{Network, Piece, Standing, Vertex};
-use super::params::Params;
 use super::plan::Plan;
 use super::{synthesize, unreached};
 
@@ -40,7 +39,8 @@ pub struct Grown {
 
 /// Splits main streets where local ones may end later.
 pub fn make_berths(net: &mut Network) {
-    let edges: Vec<EdgeId> = net.graph.edges().map(|(id, _)| id).collect();
+    let edges = net.graph.edges().filter(|(_, e)| e.data.standing != Standing::Bridge);
+    let edges: Vec<EdgeId> = edges.map(|(id, _)| id).collect();
     for id in edges {
         let line = net.graph.edge(id).line_m();
         let total = polyline::length(&line);
@@ -61,7 +61,6 @@ pub fn grow(
     claims: &Claims,
     ground: &Ground,
     plan: &Plan,
-    params: &Params,
     run: &Run,
 ) -> Result<Vec<Grown>, Error> {
     let area = &ground.area;
@@ -80,7 +79,8 @@ pub fn grow(
             let rng = cell_stream(face, run);
             let (net, seeds) = open_cell(main, &graph, &kinds, &at, face, plan, rng.clone());
             let claims = claims.window(&face.polygon);
-            let mut growth = Growth::new(net, plan, false, &face.polygon, params, claims, rng);
+            let mut growth =
+                Growth::new(net, plan, false, &face.polygon, &ground.relief, claims, rng);
             growth.queue.extend(seeds);
             enter(&mut growth, ground);
             if main.graph.edge_count() == 0 {

@@ -29,16 +29,24 @@ pub struct Claims {
     owners: Vec<u32>,
     /// The pieces, by number from 1.
     pieces: Vec<Option<Coherent>>,
+    /// Is there ground that nobody may have?
+    has_water: bool,
 }
 
 impl Claims {
-    /// Free ground inside `area`.
-    pub fn new(area: &Polygon) -> Self {
+    /// Free ground inside `area`, but where it is wet.
+    pub fn new(area: &Polygon, is_wet: impl Fn(Vec2) -> bool) -> Self {
         let mut claims = Self::over(area.bounds());
         for i in 0..claims.owners.len() {
             claims.owners[i] = OUTSIDE;
         }
         claims.open(area);
+        for i in 0..claims.owners.len() {
+            if claims.owners[i] != OUTSIDE && is_wet(claims.center(i)) {
+                claims.owners[i] = OUTSIDE;
+                claims.has_water = true;
+            }
+        }
         claims
     }
 
@@ -46,15 +54,17 @@ impl Claims {
         let size = (bounds.size() / CELL_M).ceil().max(Vec2::ONE);
         let (columns, rows) = (size.x as usize, size.y as usize);
         let (owners, pieces) = (vec![0; columns * rows], vec![None]);
-        Self { min: bounds.min, columns, rows, owners, pieces }
+        Self { min: bounds.min, columns, rows, owners, pieces, has_water: false }
     }
 
     /// The part of these claims inside `area`; what is claimed in it further does not count here.
     pub fn window(&self, area: &Polygon) -> Self {
-        let mut part = Self { pieces: self.pieces.clone(), ..Self::new(area) };
+        let mut part = Self { pieces: self.pieces.clone(), ..Self::new(area, |_| false) };
+        part.has_water = self.has_water;
         for i in 0..part.owners.len() {
             if part.owners[i] == 0 {
-                part.owners[i] = self.owner(part.center(i)).unwrap_or(0);
+                // Its water lies outside; what lies outside its area is this one's edge.
+                part.owners[i] = self.cell(part.center(i)).map_or(0, |k| self.owners[k]);
             }
         }
         part
@@ -131,6 +141,9 @@ impl Claims {
     }
 
     fn claim(&mut self, id: u32, at: Vec2, radius_m: f64, may_have: impl Fn(Vec2) -> bool) {
+        if self.has_water {
+            return self.claim_on_foot(id, at, radius_m, may_have);
+        }
         let low = ((at - radius_m - self.min) / CELL_M).floor().max(Vec2::ZERO);
         let high = ((at + radius_m - self.min) / CELL_M).ceil();
         let (columns, rows) =
@@ -143,6 +156,25 @@ impl Claims {
                     self.owners[i] = id;
                 }
             }
+        }
+    }
+
+    /// Claims only what can be reached without crossing water: the other bank is for others.
+    fn claim_on_foot(&mut self, id: u32, at: Vec2, radius_m: f64, may_have: impl Fn(Vec2) -> bool) {
+        let mut seen = std::collections::BTreeSet::new();
+        let mut open: Vec<usize> = self.cell(at).into_iter().collect();
+        seen.extend(open.iter().copied());
+        while let Some(i) = open.pop() {
+            let center = self.center(i);
+            if self.owners[i] == OUTSIDE || center.distance(at) > radius_m {
+                continue;
+            }
+            if self.owners[i] == 0 && may_have(center) {
+                self.owners[i] = id;
+            }
+            let steps = [Vec2::X, -Vec2::X, Vec2::Y, -Vec2::Y];
+            let beside = steps.into_iter().filter_map(|d| self.cell(center + d * CELL_M));
+            open.extend(beside.filter(|k| seen.insert(*k)));
         }
     }
 

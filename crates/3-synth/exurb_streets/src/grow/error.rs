@@ -18,6 +18,14 @@ pub enum Error {
     /// A start lies outside the target.
     #[error("the start {0} lies outside the target; choose a place inside it")]
     StartOutside(String),
+    /// A start lies where no street can.
+    #[error("the start {0} lies in water or on ground too steep (see `slope`); move it to land")]
+    StartInWater(String),
+    /// The target has no ground for streets.
+    #[error(
+        "the whole target lies in water or on ground too steep (see `slope`); choose another target"
+    )]
+    NoLand,
     /// Nothing grew.
     #[error(
         "no street grew from {starts} start(s) in a target of {area_km2:.3} km²; enlarge the target or move the start"

@@ -26,7 +26,7 @@ const FARTHEST_M: f64 = 1600.0;
 /// Places of the example farther than this from every street are sea or hills, not city, in metres.
 const BUILT_UP_M: f64 = 250.0;
 /// Rounds at most: a round fills what the one before has brought within reach.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 10;
 
 /// How far from the streets of `index` a place must lie to count as empty, in metres: learned from the
 /// places of `area` that lie in the built-up parts, near some street of `all`.
@@ -49,6 +49,7 @@ pub fn fill(growth: &mut Growth, empty_m: f64, run: &Run) -> Result<(), Error> {
         let mut grew = false;
         for place in places(area, empty_m) {
             if growth.claims.owner(place).is_some()
+                || !growth.relief.bears(place)
                 || growth.net.edge_near(place, empty_m).is_some()
                 || area.boundary_distance_m(place) < empty_m * 0.3
             {

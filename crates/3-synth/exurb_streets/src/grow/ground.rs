@@ -9,6 +9,8 @@ use exurb_graph::{EdgeId, NodeId};
 
 use super::growth::{Growth, Open};
 use super::network::{Network, Piece, Standing, Vertex};
+use super::params::Params;
+use super::relief::Relief;
 
 /// Streets of the city around are kept in view up to this far from the ground, in metres.
 const AROUND_M: f64 = 120.0;
@@ -27,6 +29,8 @@ pub struct Ground {
     pub given: StreetGraph,
     /// The city around.
     pub around: Option<Around>,
+    /// Water and slopes.
+    pub relief: Relief,
 }
 
 /// The city around a target inside it.
@@ -40,15 +44,16 @@ pub struct Around {
 
 impl Ground {
     /// A target in the open, with the streets that the city holds as given.
-    pub fn open(city: &City, target: &Polygon, margin_m: f64) -> Self {
+    pub fn open(city: &City, target: &Polygon, margin_m: f64, params: &Params) -> Self {
         let given = street_graph::subgraph(&city.streets, |_, street| is_given(street));
         let grown = offset::inset(target, -margin_m).into_iter().next();
         let area = grown.unwrap_or_else(|| target.clone());
-        Self { target: target.clone(), area, given, around: None }
+        let relief = Relief::of(city, params);
+        Self { target: target.clone(), area, given, around: None, relief }
     }
 
     /// A part of a city that is emptied, but for what is given.
-    pub fn inside(city: &City, target: &Polygon) -> Self {
+    pub fn inside(city: &City, target: &Polygon, params: &Params) -> Self {
         let mut streets = (*city.streets).clone();
         let cut = streets.cut_along(target, |_| true);
         let outside: BTreeSet<EdgeId> = cut.outside.into_iter().collect();
@@ -68,7 +73,14 @@ impl Ground {
         let on_border = |p: GridPoint| target.boundary_distance_m(p.to_m()) < ON_BORDER_M;
         let gates = streets.nodes().map(|(_, n)| n.at).filter(|p| on_border(*p)).collect();
         let around = Some(Around { streets, gates });
-        Self { target: target.clone(), area: target.clone(), given: given.compacted(), around }
+        let relief = Relief::of(city, params);
+        Self {
+            target: target.clone(),
+            area: target.clone(),
+            given: given.compacted(),
+            around,
+            relief,
+        }
     }
 
     /// Does growth begin from streets that are there?

@@ -16,6 +16,7 @@ use exurb_measure::statistics::StreetStatistics;
 use exurb_operation::{Rng, Run};
 use rand::RngExt;
 
+use super::bridges::Ford;
 use super::claims::Claims;
 use super::error::Error;
 use super::layer::{ChainEnd, NodeKind};
@@ -23,6 +24,7 @@ use super::learn::Style;
 use super::network::{Coherent, Landing, Network, Piece, Vertex, Wish};
 use super::params::Params;
 use super::plan::Plan;
+use super::relief::{Relief, Verdict};
 use super::seams::{Leaving, Seams};
 use super::{drawing, placing, procedural, seams};
 
@@ -54,6 +56,10 @@ pub struct Growth<'a> {
     pub seams: Seams,
     /// Which piece every place belongs to.
     pub claims: Claims,
+    /// The ground.
+    pub relief: &'a Relief,
+    /// Main streets that came to water.
+    pub fords: Vec<Ford>,
     batch: u32,
 }
 
@@ -93,13 +99,28 @@ impl<'a> Growth<'a> {
         plan: &'a Plan<'a>,
         is_main: bool,
         area: &'a Polygon,
-        params: &'a Params,
+        relief: &'a Relief,
         claims: Claims,
         rng: Rng,
     ) -> Self {
         let (queue, frontier) = (VecDeque::new(), VecDeque::new());
         let seams = Seams::new();
-        Self { net, plan, is_main, area, params, rng, queue, frontier, seams, claims, batch: 1 }
+        let fords = Vec::new();
+        Self {
+            net,
+            plan,
+            is_main,
+            area,
+            params: plan.params,
+            rng,
+            queue,
+            frontier,
+            seams,
+            claims,
+            relief,
+            fords,
+            batch: 1,
+        }
     }
 
     /// The layer's style in an example.
@@ -281,6 +302,15 @@ impl<'a> Growth<'a> {
             return None;
         }
         let probe = self.net.probe(node, line, wish)?;
+        match self.relief.verdict(&probe.line) {
+            Verdict::Fine => (),
+            Verdict::Wet => {
+                self.note_ford(node, &probe.line, &piece.street);
+                return None;
+            }
+            Verdict::Kept => return None,
+            Verdict::Steep => return self.lay_bent(node, line, wish, &piece.street),
+        }
         let is_whole = probe.landing == Landing::Free && probe.kept > 0.999;
         let landed = polyline::length(&probe.line);
         let whole = probe.line.len() == line.len();
@@ -304,6 +334,51 @@ impl<'a> Growth<'a> {
             }
         }
         Some(Laid { to, is_whole })
+    }
+
+    /// Lays a street that would be too steep along the slope instead. Where it ends nothing of the
+    /// example follows, so another patch may begin there.
+    fn lay_bent(
+        &mut self,
+        node: NodeId,
+        line: &[Vec2],
+        wish: Wish,
+        street: &Street,
+    ) -> Option<Laid> {
+        if wish.to.is_some() || wish.dead_end {
+            return None;
+        }
+        let line = self.relief.along_slope(line);
+        if !self.keeps_spacing(node, &line) {
+            return None;
+        }
+        let probe = self.net.probe(node, &line, Wish::free(0))?;
+        if self.relief.verdict(&probe.line) != Verdict::Fine {
+            return None;
+        }
+        let is_free = probe.landing == Landing::Free;
+        let piece = self.made(street, Origin::Procedural);
+        let (to, _) = self.net.commit(node, probe, piece, Vertex::default())?;
+        if !self.area.contains(self.net.graph.node(to).at) {
+            self.net.graph.node_mut(to).data.outside = true;
+        } else if is_free {
+            self.frontier.push_back(Open::Node(to));
+        }
+        Some(Laid { to, is_whole: false })
+    }
+
+    /// A main street that comes to water may cross it later.
+    fn note_ford(&mut self, node: NodeId, line: &[Vec2], street: &Street) {
+        const STEP_M: f64 = 8.0;
+        if !self.is_main {
+            return;
+        }
+        let steps = (polyline::length(line) / STEP_M).ceil() as usize;
+        let places = (0..=steps).map(|i| polyline::point_at(line, i as f64 * STEP_M));
+        let direction = places.map(|p| (p, p - line[0])).find(|(p, _)| self.relief.is_wet(*p));
+        if let Some(direction) = direction.and_then(|(_, d)| d.try_normalize()) {
+            self.fords.push(Ford { node, direction, street: street.clone() });
+        }
     }
 
     /// Does a line from a node of the cell's border begin outside the cell, where the cell sees no

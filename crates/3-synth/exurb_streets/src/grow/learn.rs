@@ -37,6 +37,8 @@ pub struct Vocabulary {
     pub large_block_m: f64,
     /// Values of the example's likeness gates.
     pub gates: BTreeMap<String, f64>,
+    /// Mean height in metres and mean slope of its ground, where it knows them.
+    pub relief: Option<(f64, f64)>,
 }
 
 /// One layer of an example with its patches and statistics.
@@ -187,7 +189,20 @@ pub fn learn(city: &City, params: &Params) -> Result<Vocabulary, Error> {
     let (center, large_block_m) = (center_of(&graph), large_block_m(&graph));
     let samples = Samples::of(graph.edges().map(|(id, e)| (e.line_m(), is_main[id.index()])));
     let extent = city.target.clone();
-    Ok(Vocabulary { extent, name, weight: 1.0, main, local, samples, center, large_block_m, gates })
+    let relief = city.terrain.as_ref().and_then(|t| t.relief(&city.target));
+    let relief = relief.map(|r| (r.mean_m, r.slope));
+    Ok(Vocabulary {
+        extent,
+        name,
+        weight: 1.0,
+        main,
+        local,
+        samples,
+        center,
+        large_block_m,
+        gates,
+        relief,
+    })
 }
 
 /// Half of the mean width that three quarters of the blocks between these streets have at least.

@@ -19,9 +19,11 @@
 //!
 //! Units: metres, radians. Complexity: O(streets grown · streets nearby). Same seed, same streets.
 
+mod bridges;
 mod cells;
 mod claims;
 mod detect;
+mod domains;
 mod drawing;
 mod edge;
 mod error;
@@ -40,6 +42,7 @@ mod placing;
 mod plan;
 mod prepare;
 mod procedural;
+mod relief;
 mod seams;
 mod starts;
 mod synthesize;
@@ -54,6 +57,7 @@ use exurb_city::street_graph::StreetGraph;
 use exurb_city::{City, Edit, block};
 use exurb_operation::{Card, Example, Failure, Operation, Run, Scope};
 
+use domains::Domains;
 pub use error::Error;
 pub use ground::Ground;
 pub use learn::{Vocabulary, learn};
@@ -106,13 +110,16 @@ impl Operation for Grow {
         run: &Run,
     ) -> Result<Edit, Failure> {
         let ground = match scope {
-            Scope::Inside(polygon) => Ground::inside(city, polygon),
-            Scope::All | Scope::Blocks(_) => {
-                Ground::open(city, &city.target, synthesize::margin_m(&learned.vocabularies))
-            }
+            Scope::Inside(polygon) => Ground::inside(city, polygon, params),
+            Scope::All | Scope::Blocks(_) => Ground::open(
+                city,
+                &city.target,
+                synthesize::margin_m(&learned.vocabularies),
+                params,
+            ),
         };
         let plan = learned.plan(city, &ground, params, run).map_err(failure)?;
-        let streets = synthesize(&ground, &plan, params, run).map_err(failure)?;
+        let streets = synthesize(&ground, &plan, run).map_err(failure)?;
         let mut streets = lawful(city, &ground, streets, run);
         assign_levels(&mut streets, &Hierarchy::default());
         run.phase("blocks");
@@ -133,13 +140,13 @@ impl Operation for Grow {
 
 impl Learned {
     /// What grows where in `target`.
-    fn plan(
-        &self,
+    fn plan<'a>(
+        &'a self,
         city: &City,
         ground: &Ground,
-        params: &Params,
+        params: &'a Params,
         run: &Run,
-    ) -> Result<Plan<'_>, Error> {
+    ) -> Result<Plan<'a>, Error> {
         let target = &ground.target;
         let (examples, frames) = (&self.vocabularies[..], &self.frames[..]);
         if params.interpolation.is_some() && examples.len() != 2 {
@@ -150,6 +157,8 @@ impl Learned {
         }
         Ok(Plan {
             examples,
+            params,
+            domains: Domains::of(city, &ground.area, examples, params, run)?,
             starts: starts::starts(city, ground, examples, frames, params)?,
             blend_m: params.blend * target.bounds().size().max_element(),
             interpolation: params.interpolation,
@@ -200,8 +209,10 @@ fn failure(error: Error) -> Failure {
     let (operation, message) = (Grow::CARD.name(), error.to_string());
     match error {
         Error::NoStreets(_) | Error::NoPatch(_) => Failure::Example { operation, message },
-        Error::Params(_) | Error::StartOutside(_) => Failure::Params { operation, message },
-        Error::Nothing { .. } => Failure::City { operation, message },
+        Error::Params(_) | Error::StartOutside(_) | Error::StartInWater(_) => {
+            Failure::Params { operation, message }
+        }
+        Error::Nothing { .. } | Error::NoLand => Failure::City { operation, message },
         Error::Cancelled => Failure::Cancelled,
     }
 }

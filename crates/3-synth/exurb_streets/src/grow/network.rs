@@ -90,6 +90,8 @@ pub enum Standing {
     Given,
     /// Of the main streets around a cell: streets may end on it at its nodes only.
     Main,
+    /// A bridge: streets meet it at its ends only.
+    Bridge,
     /// Beyond the border of the ground: in view only.
     Beyond,
     /// Not a street but the border of the ground.

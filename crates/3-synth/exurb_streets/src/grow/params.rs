@@ -1,6 +1,6 @@
 //! What a user may turn.
 
-use exurb_operation::Params as _;
+use exurb_operation::{DomainsFile, Params as _};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -21,6 +21,21 @@ pub struct Params {
     /// A place where growth begins, as `LON,LAT` in the target or `LON,LAT=LON,LAT` with the place
     /// in the example that it begins with. Replaces `starts`.
     pub start: Vec<String>,
+    /// A GeoJSON file of areas: `use` and `example`, or `examples` with weights, say what each grows
+    /// like; without examples, the one whose own ground is most like the area's.
+    pub areas: DomainsFile,
+    /// Splits the target by height and slope into parts that each grow like the example whose own
+    /// ground is most like theirs.
+    pub split: bool,
+    /// Heights that belong together where the target is split.
+    #[schemars(range(min = 1.0, max = 10000.0), extend("x-unit" = "m"))]
+    pub height_bin: f64,
+    /// Slopes that belong together where the target is split, rise over run.
+    #[schemars(range(min = 0.01, max = 10.0))]
+    pub slope_bin: f64,
+    /// No part is smaller where the target is split.
+    #[schemars(range(min = 0.0, max = 1000.0), extend("x-unit" = "km²"))]
+    pub least_domain: f64,
     /// Width of the transition between several examples, as a share of the target's longer side: 0
     /// changes the style at once where the next start is nearer.
     #[schemars(range(min = 0.0, max = 10.0))]
@@ -55,6 +70,12 @@ pub struct Params {
     /// Largest radius of a circle of local streets that stays together as one patch.
     #[schemars(range(min = 0.0, max = 1000.0), extend("x-unit" = "m"))]
     pub local_circle: f64,
+    /// Streets are no steeper than this: their rise over run.
+    #[schemars(range(min = 0.0, max = 2.0))]
+    pub grade: f64,
+    /// No street lies on ground steeper than this: its rise over run.
+    #[schemars(range(min = 0.0, max = 10.0))]
+    pub slope: f64,
     /// Dead ends that the example does not have there are removed.
     pub remove_dangling: bool,
 }
@@ -66,7 +87,12 @@ impl Default for Params {
             procedural: 0.0,
             starts: 1,
             start: Vec::new(),
-            blend: 0.1, // half the authors' program's, as eq. (4) has it
+            areas: DomainsFile::default(),
+            split: false,
+            height_bin: 80.0,
+            slope_bin: 0.1,
+            least_domain: 0.1, // the authors' program
+            blend: 0.1,        // half the authors' program's, as eq. (4) has it
             interpolation: None,
             guide: Vec::new(),
             rotate: 0.0,
@@ -77,6 +103,8 @@ impl Default for Params {
             keep: Vec::new(),
             main_circle: 500.0,  // the authors' program
             local_circle: 100.0, // the authors' program
+            grade: 0.2,
+            slope: 0.6, // the authors' program: 36°, 0.73
             remove_dangling: true,
         }
     }

@@ -11,7 +11,9 @@ use exurb_geom::{Vec2, polyline, trig};
 use exurb_measure::statistics::StreetStatistics;
 use exurb_operation::rng::fnv1a;
 
+use super::domains::Domains;
 use super::learn::{Style, Vocabulary};
+use super::params::Params;
 
 /// Styles mix in patches of about this size, in metres.
 const PATCHINESS_M: f64 = 220.0;
@@ -129,6 +131,8 @@ impl Guide {
 pub struct Plan<'a> {
     /// The examples.
     pub examples: &'a [Vocabulary],
+    /// What the user set.
+    pub params: &'a Params,
     /// Where growth begins.
     pub starts: Vec<Start>,
     /// The width of the transition between examples: σ·D of eq. (4), in metres.
@@ -139,6 +143,8 @@ pub struct Plan<'a> {
     pub rotate_rad: f64,
     /// The guideline of a warp.
     pub guide: Option<Guide>,
+    /// Parts of the target with examples of their own.
+    pub domains: Domains,
     /// The random seed.
     pub seed: u64,
 }
@@ -147,7 +153,9 @@ impl Plan<'_> {
     /// The example to copy at `p`.
     pub fn example_at(&self, p: Vec2) -> usize {
         let first = self.starts.first().map_or(0, |s| s.example);
+        let own = self.domains.weights_at(p);
         let weights = match self.interpolation {
+            _ if own.is_some() => own.unwrap_or_default().to_vec(),
             Some(share) => vec![share, 1.0 - share],
             None if self.starts.is_empty() => self.examples.iter().map(|e| e.weight).collect(),
             None if self.starts.iter().all(|s| s.example == first) => return first,

@@ -10,6 +10,7 @@ use rand_distr::{Distribution, Normal};
 
 use super::growth::Growth;
 use super::network::{Landing, Standing, Vertex, Wish};
+use super::relief::Verdict;
 
 /// Pieces of a procedural street.
 const STEPS: usize = 5;
@@ -117,6 +118,10 @@ pub fn step(growth: &mut Growth, node: NodeId, direction: Vec2) {
     if turn < 0.02 {
         line = vec![at, at + direction * length_m];
     }
+    let line = match growth.relief.verdict(&line) {
+        Verdict::Steep => growth.relief.along_slope(&line),
+        Verdict::Fine | Verdict::Wet | Verdict::Kept => line,
+    };
     let street = street_like(growth, node);
     let piece = growth.made(&street, Origin::Procedural);
     if let Some(laid) = growth.lay(node, &line, Wish::free(0), piece, Vertex::default(), &[])

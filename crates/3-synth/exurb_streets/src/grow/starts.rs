@@ -8,6 +8,7 @@ use super::ground::Ground;
 use super::learn::Vocabulary;
 use super::params::{self, Params};
 use super::plan::{Guide, Start};
+use super::relief::Relief;
 
 /// Growth begins as told: at the points of the guideline, at the named places, else from the streets
 /// that are there, else spread over the target, the first in its middle. `frames` are those of the
@@ -30,7 +31,10 @@ pub fn starts(
         return Ok(Vec::new());
     }
     if named.is_empty() {
-        let places = spread(target, (params.starts as usize).max(count));
+        let places = spread(target, &ground.relief, (params.starts as usize).max(count));
+        if places.is_empty() {
+            return Err(Error::NoLand);
+        }
         return Ok(places.into_iter().enumerate().map(|(i, at)| start(i, at, None)).collect());
     }
     let mut out = Vec::new();
@@ -39,6 +43,9 @@ pub fn starts(
         let at = in_frame(&city.frame, place)
             .filter(|p| !params.guide.is_empty() || target.contains(GridPoint::round(*p)))
             .ok_or_else(|| Error::StartOutside(text.clone()))?;
+        if !ground.relief.bears(at) {
+            return Err(Error::StartInWater(text.clone()));
+        }
         let source = source.and_then(|place| in_frame(&frames[i % count], place));
         out.push(start(i, at, source));
     }
@@ -74,18 +81,24 @@ fn in_frame(frame: &Frame, (lon, lat): params::Place) -> Option<Vec2> {
     frame.project(LonLat { lon, lat })
 }
 
-/// `count` places in the polygon: its interior point, then each as far as possible from the others
-/// and the edge, on a grid of about 40 × 40.
-fn spread(target: &Polygon, count: usize) -> Vec<Vec2> {
-    let mut places = vec![target.interior_point()];
+/// `count` places in the polygon on dry and gentle ground: its interior point, then each as far as
+/// possible from the others and the edge, on a grid of about 40 × 40.
+fn spread(target: &Polygon, relief: &Relief, count: usize) -> Vec<Vec2> {
     let bounds = target.bounds();
     let step = bounds.size() / 40.0;
     let grid: Vec<Vec2> = (1..40)
         .flat_map(|y| (1..40).map(move |x| Vec2::new(f64::from(x), f64::from(y))))
         .map(|k| bounds.min + k * step)
-        .filter(|p| target.contains(GridPoint::round(*p)))
+        .filter(|p| target.contains(GridPoint::round(*p)) && relief.bears(*p))
         .collect();
-    while places.len() < count {
+    let middle = target.interior_point();
+    let near_middle = || {
+        let off = |p: &Vec2| p.distance_squared(middle);
+        grid.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)))
+    };
+    let first = if relief.bears(middle) { Some(middle) } else { near_middle() };
+    let mut places: Vec<Vec2> = first.into_iter().collect();
+    while !places.is_empty() && places.len() < count {
         let room = |p: &Vec2| {
             let others = places.iter().map(|q| q.distance(*p)).fold(f64::INFINITY, f64::min);
             others.min(2.0 * target.boundary_distance_m(*p))

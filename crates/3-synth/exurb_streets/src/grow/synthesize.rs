@@ -14,10 +14,9 @@ use super::ground::Ground;
 use super::growth::{Growth, Place};
 use super::learn::Vocabulary;
 use super::network::{Coherent, Network, Piece, Standing, Vertex};
-use super::params::Params;
 use super::placing;
 use super::plan::{Plan, Start};
-use super::{fill, finish, unreached};
+use super::{bridges, fill, finish, unreached};
 
 /// Growth goes on beyond the target by a large block of the example, so that blocks at its edge close
 /// and its edge looks like its middle; by no more and no less than this.
@@ -30,25 +29,20 @@ pub fn margin_m(examples: &[Vocabulary]) -> f64 {
 }
 
 /// Grows streets on that ground; the result holds those of the city around, too.
-pub fn synthesize(
-    ground: &Ground,
-    plan: &Plan,
-    params: &Params,
-    run: &Run,
-) -> Result<StreetGraph, Error> {
+pub fn synthesize(ground: &Ground, plan: &Plan, run: &Run) -> Result<StreetGraph, Error> {
     run.phase("main streets");
-    let (mut main, claims) = grow_main(ground, plan, params, run)?;
-    if params.remove_dangling {
+    let (mut main, claims) = grow_main(ground, plan, run)?;
+    if plan.params.remove_dangling {
         remove_open_ends(&mut main, plan);
     }
     cells::make_berths(&mut main);
 
     run.phase("local streets");
-    let local = cells::grow(&main, &claims, ground, plan, params, run)?;
+    let local = cells::grow(&main, &claims, ground, plan, run)?;
 
     run.phase("finish");
     let graph = join(main, local);
-    let streets = finish::finish(graph, ground, dead_end_share(plan), params.remove_dangling);
+    let streets = finish::finish(graph, ground, dead_end_share(plan), plan.params.remove_dangling);
     if streets.edge_count() == 0 {
         let area_km2 = ground.target.area_m2() / 1e6;
         return Err(Error::Nothing { starts: plan.starts.len(), area_km2 });
@@ -66,23 +60,20 @@ fn dead_end_share(plan: &Plan) -> Option<f64> {
     (total > 0.0).then(|| sum / total)
 }
 
-fn grow_main(
-    ground: &Ground,
-    plan: &Plan,
-    params: &Params,
-    run: &Run,
-) -> Result<(Network, Claims), Error> {
+fn grow_main(ground: &Ground, plan: &Plan, run: &Run) -> Result<(Network, Claims), Error> {
     let area = &ground.area;
     let first = plan.example_at(area.interior_point());
     let mut net = Network::new(plan.statistics(first, true).length_mean_m);
     ground.furnish(&mut net);
-    let claims = Claims::new(area);
-    let mut growth = Growth::new(net, plan, true, area, params, claims, run.stream(0));
+    let relief = &ground.relief;
+    let claims = Claims::new(area, |p| relief.is_closed(p));
+    let mut growth = Growth::new(net, plan, true, area, relief, claims, run.stream(0));
     ground.begin_main(&mut growth);
     for start in &plan.starts {
         begin(&mut growth, start);
     }
     growth.run(run)?;
+    bridges::lay(&mut growth, run)?;
     unreached::lay(&mut growth, run)?;
     if growth.net.graph.edge_count() > 0 {
         fill::fill(&mut growth, plan.examples[first].main.empty_m, run)?;
@@ -123,7 +114,10 @@ fn remove_open_ends(net: &mut Network, plan: &Plan) {
     while let Some(node) = open.pop() {
         let Some(n) = net.graph.get_node(node) else { continue };
         let is_open = net.graph.degree(node) == 1
-            && net.graph.edge(net.graph.darts(node)[0].edge()).data.standing == Standing::Grown;
+            && matches!(
+                net.graph.edge(net.graph.darts(node)[0].edge()).data.standing,
+                Standing::Grown | Standing::Bridge
+            );
         if n.data.dead_end || n.data.outside || !is_open {
             continue;
         }

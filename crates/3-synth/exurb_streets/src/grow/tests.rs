@@ -257,6 +257,120 @@ fn a_warp_turns_streets_with_its_guideline() {
     assert!(grow(&grid(12), square(Vec2::splat(600.0), 600.0), lonely, 1).is_err());
 }
 
+/// An empty city with a river from south to north, 90 m wide, and hills in the east.
+fn riverside(side_m: f64) -> City {
+    let mut city = City::empty(Frame::null_island(), square(Vec2::splat(side_m / 2.0), side_m));
+    let river = Polygon::rectangle(
+        GridPoint::m(0.4 * side_m, -400.0),
+        GridPoint::m(0.4 * side_m + 90.0, side_m + 400.0),
+    );
+    city.water = Arc::new(vec![exurb_city::Area { id: 1, polygon: river, class: "river".into() }]);
+    let bounds = city.target.bounds().grown(400.0);
+    // A ridge of 70 m, its flanks rising by a quarter.
+    let height = |p: Vec2| (70.0 - (p.x - 0.8 * side_m).abs() * 0.25).max(0.0) as f32;
+    city.lay(exurb_city::Terrain::over(bounds, 10.0, height).expect("small"));
+    city
+}
+
+#[test]
+fn streets_keep_out_of_water_and_off_steep_ground_and_cross_on_bridges() {
+    let city = riverside(1800.0);
+    let land = exurb_city::Land::of(&city);
+    for seed in 1..3 {
+        let document = serde_json::json!({ "grade": 0.15, "continuation": 0.4 });
+        let grown = erase::<super::Grow>()
+            .run(&city, &Scope::All, &[Example::new(grid(20))], document, &Run::new(seed))
+            .expect("grows")
+            .city;
+        assert_lawful(&grown);
+        let (mut bridges, mut banks) = (0, [0.0, 0.0]);
+        for (_, edge) in grown.streets.edges() {
+            let line = edge.line_m();
+            if edge.data.bridge {
+                assert_eq!(edge.data.provenance.origin, exurb_city::Origin::Bridge);
+                assert_eq!(edge.data.layer, 1);
+                bridges += 1;
+                continue;
+            }
+            let places = exurb_geom::polyline::resample(&line, 5.0);
+            assert!(places.iter().all(|p| !land.is_wet(*p)), "a street in water");
+            banks[usize::from(line[0].x > 760.0)] += edge.length_m();
+            let inside = |p: &Vec2| city.target.contains(GridPoint::round(*p));
+            for w in places.windows(8).filter(|w| w.iter().all(inside)) {
+                let rise = (land.height_m(w[7]) - land.height_m(w[0])).abs();
+                assert!(rise <= 0.19 * 35.0, "rises by {rise} m over 35 m");
+            }
+        }
+        assert!(bridges >= 1, "no bridge");
+        assert!(banks.iter().all(|m| *m > 3000.0), "{banks:?}");
+        let deck = grown.streets.nodes().filter(|(_, n)| (700.0..830.0).contains(&n.at.to_m().x));
+        assert!(deck.count() >= 2);
+    }
+}
+
+#[test]
+fn a_target_in_the_sea_and_a_start_in_water_are_refused() {
+    let mut city = riverside(1000.0);
+    let wet = serde_json::json!({ "start": ["0.0039,0.004"] });
+    let run = |city: &City, document| {
+        let examples = [Example::new(grid(12))];
+        erase::<super::Grow>().run(city, &Scope::All, &examples, document, &Run::new(1))
+    };
+    let error = run(&city, wet).unwrap_err().to_string();
+    assert!(error.contains("lies in water"), "{error}");
+    let sea = exurb_city::Area {
+        id: 1,
+        polygon: square(Vec2::splat(500.0), 3000.0),
+        class: "sea".into(),
+    };
+    city.water = Arc::new(vec![sea]);
+    let error = run(&city, serde_json::json!({})).unwrap_err().to_string();
+    assert!(error.contains("the whole target lies in water"), "{error}");
+}
+
+#[test]
+fn areas_grow_like_the_examples_they_name_and_parks_stay_free() {
+    let named = |name: &str, mut city: City| {
+        city.metadata.name = name.into();
+        Example::new(city)
+    };
+    let examples = [named("west", grid(20)), named("east", grid(20))];
+    let mut empty = City::empty(Frame::null_island(), square(Vec2::splat(800.0), 1600.0));
+    let park = square(Vec2::new(400.0, 400.0), 300.0);
+    empty.land_use =
+        Arc::new(vec![exurb_city::Area { id: 1, polygon: park.clone(), class: "park".into() }]);
+    let area = |name: &str, west: f64, east: f64| {
+        serde_json::json!({
+            "use": "flat", "examples": { name: 1.0 },
+            "polygon": [[[west, -400.0], [east, -400.0], [east, 2000.0], [west, 2000.0]]],
+        })
+    };
+    let areas = [area("west", -400.0, 800.0), area("east", 800.0, 2000.0)];
+    let document = serde_json::json!({ "areas": { "areas": areas } });
+    let city = erase::<super::Grow>()
+        .run(&empty, &Scope::All, &examples, document, &Run::new(1))
+        .expect("grows")
+        .city;
+    assert_lawful(&city);
+    let (mut right, mut copied) = (0.0, 0.0);
+    for (_, edge) in city.streets.edges() {
+        let line = edge.line_m();
+        let middle = exurb_geom::polyline::point_at(&line, edge.length_m() / 2.0);
+        assert!(!park.contains(GridPoint::round(middle)), "a street in the park");
+        if let Some(source) = &edge.data.provenance.source {
+            let wanted = if middle.x < 800.0 { "west" } else { "east" };
+            copied += edge.length_m();
+            right += if **source == *wanted { edge.length_m() } else { 0.0 };
+        }
+    }
+    assert!(right > 0.85 * copied && copied > 10_000.0, "{right} of {copied}");
+    let unknown = serde_json::json!({ "areas": { "areas": [area("north", 0.0, 9.0)] } });
+    let error = erase::<super::Grow>()
+        .run(&empty, &Scope::All, &examples, unknown, &Run::new(1))
+        .unwrap_err();
+    assert!(error.to_string().contains("`north`"), "{error}");
+}
+
 #[test]
 fn examples_without_streets_or_junctions_are_refused() {
     let empty = city_of({
