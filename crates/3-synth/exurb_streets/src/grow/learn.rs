@@ -14,6 +14,7 @@ use super::fit::Samples;
 use super::layer::{ChainEnd, Layer};
 use super::params::{self, Params};
 use super::patch::{self, Patch};
+use super::polish::Profile;
 use super::{detect, fill, prepare};
 
 /// What one example teaches.
@@ -39,6 +40,8 @@ pub struct Vocabulary {
     pub gates: BTreeMap<String, f64>,
     /// Mean height in metres and mean slope of its ground, where it knows them.
     pub relief: Option<(f64, f64)>,
+    /// What its streets and junctions are like, for the finish.
+    pub profile: Profile,
 }
 
 /// One layer of an example with its patches and statistics.
@@ -202,6 +205,7 @@ pub fn learn(city: &City, params: &Params) -> Result<Vocabulary, Error> {
         large_block_m,
         gates,
         relief,
+        profile: Profile::of(&graph),
     })
 }
 

@@ -40,6 +40,7 @@ mod params;
 mod patch;
 mod placing;
 mod plan;
+mod polish;
 mod prepare;
 mod procedural;
 mod relief;

@@ -76,6 +76,21 @@ pub struct Params {
     /// No street lies on ground steeper than this: its rise over run.
     #[schemars(range(min = 0.0, max = 10.0))]
     pub slope: f64,
+    /// In the end local edits bring the network nearer to the example: kinks, pairs of junctions and
+    /// joints go where the example has fewer.
+    pub polish: bool,
+    /// How much lengths of streets count in that.
+    #[schemars(range(min = 0.0, max = 100.0))]
+    pub lengths_weight: f64,
+    /// How much bends of streets count in that.
+    #[schemars(range(min = 0.0, max = 100.0))]
+    pub bends_weight: f64,
+    /// How much junctions count in that: their degrees and the angles of those of three streets.
+    #[schemars(range(min = 0.0, max = 100.0))]
+    pub junctions_weight: f64,
+    /// How much the number of junctions for each kilometre of street counts in that.
+    #[schemars(range(min = 0.0, max = 100.0))]
+    pub density_weight: f64,
     /// Dead ends that the example does not have there are removed.
     pub remove_dangling: bool,
 }
@@ -105,6 +120,11 @@ impl Default for Params {
             local_circle: 100.0, // the authors' program
             grade: 0.2,
             slope: 0.6, // the authors' program: 36°, 0.73
+            polish: true,
+            lengths_weight: 1.0,
+            bends_weight: 1.0,
+            junctions_weight: 1.0,
+            density_weight: 1.0,
             remove_dangling: true,
         }
     }

@@ -171,6 +171,14 @@ impl Plan<'_> {
         first
     }
 
+    /// The examples with their shares of the whole.
+    pub fn shares(&self) -> impl Iterator<Item = (&Vocabulary, f64)> {
+        self.examples.iter().enumerate().map(|(i, example)| match self.interpolation {
+            Some(share) => (example, if i == 0 { share } else { 1.0 - share }),
+            None => (example, example.weight),
+        })
+    }
+
     /// Eq. (4): the weights of the examples at `p`.
     fn weights(&self, p: Vec2) -> Vec<f64> {
         let squares: Vec<f64> = self.starts.iter().map(|s| s.at.distance_squared(p)).collect();

@@ -16,7 +16,8 @@ use super::learn::Vocabulary;
 use super::network::{Coherent, Network, Piece, Standing, Vertex};
 use super::placing;
 use super::plan::{Plan, Start};
-use super::{bridges, fill, finish, unreached};
+use super::polish::{Profile, Weights};
+use super::{bridges, fill, finish, polish, unreached};
 
 /// Growth goes on beyond the target by a large block of the example, so that blocks at its edge close
 /// and its edge looks like its middle; by no more and no less than this.
@@ -42,12 +43,33 @@ pub fn synthesize(ground: &Ground, plan: &Plan, run: &Run) -> Result<StreetGraph
 
     run.phase("finish");
     let graph = join(main, local);
-    let streets = finish::finish(graph, ground, dead_end_share(plan), plan.params.remove_dangling);
+    let mut streets =
+        finish::finish(graph, ground, dead_end_share(plan), plan.params.remove_dangling);
+    if plan.params.polish {
+        polish(&mut streets, ground, plan);
+    }
     if streets.edge_count() == 0 {
         let area_km2 = ground.target.area_m2() / 1e6;
         return Err(Error::Nothing { starts: plan.starts.len(), area_km2 });
     }
     Ok(ground.whole(streets))
+}
+
+/// Local edits that bring the network nearer to the examples.
+fn polish(streets: &mut StreetGraph, ground: &Ground, plan: &Plan) {
+    let params = plan.params;
+    let wanted = Profile::mixed(plan.shares().map(|(e, share)| (&e.profile, share)));
+    let weights = Weights {
+        lengths: params.lengths_weight,
+        bends: params.bends_weight,
+        junctions: params.junctions_weight,
+        density: params.density_weight,
+    };
+    polish::polish(streets, &wanted, &weights, ground, |streets, id| {
+        ground.may_remove(streets, id.0) && !streets.edge(id).data.bridge
+    });
+    ground.dissolve(streets);
+    *streets = streets.compacted();
 }
 
 /// The share of dead ends to aim at: the mean of the examples' shares by their weights.
