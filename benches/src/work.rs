@@ -1,7 +1,10 @@
 //! The work that benches measure, a process each; prints what it did as one line of JSON:
-//! `read MAP`, `grow EXAMPLE SIDE_M`, `faces MAP LINES.txt`.
+//! `read MAP`, `grow EXAMPLE SIDE_M`, `faces MAP LINES.txt`, `retarget MAP`, `query MAP...`,
+//! `outlines FILE.json`, `cadastre MAP FILE.json`.
 
 #![allow(clippy::print_stdout, reason = "its output is the result")]
+
+mod blocks_work;
 
 use std::error::Error;
 use std::fmt::Write;
@@ -21,6 +24,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         ["read", map] => read(map.as_ref())?,
         ["grow", example, side_m] => grow(example.as_ref(), side_m.parse()?)?,
         ["faces", map, lines] => faces(map.as_ref(), lines.as_ref())?,
+        ["retarget", map] => blocks_work::retarget(&city_of(map.as_ref())?)?,
+        ["query", ref maps @ ..] => {
+            let cities = maps.iter().map(|map| city_of(map.as_ref()));
+            blocks_work::query(&cities.collect::<Result<Vec<City>, _>>()?)?
+        }
+        ["outlines", file] => blocks_work::outlines(file.as_ref())?,
+        ["cadastre", map, file] => blocks_work::cadastre(&city_of(map.as_ref())?, file.as_ref())?,
         _ => return Err("no such work".into()),
     };
     println!("{said}");

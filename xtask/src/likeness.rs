@@ -1,4 +1,5 @@
-//! `likeness`: the protocol over every shared map, and its table in docs/likeness.md; `panel`: the
+//! `likeness`: the protocol over every shared map, and its table in docs/likeness.md; `blocks`: that of
+//! buildings, in docs/blocks.md; `panel`: the
 //! built-in panel of `exurb compare`, measured anew.
 
 use std::path::PathBuf;
@@ -26,7 +27,44 @@ pub fn run(options: &[&str]) -> Outcome {
     let mut protocol = std::process::Command::new(target().join("release/exurb_protocol"));
     let table = output_of(protocol.args(options).args(maps))?;
     println!("{table}");
-    if options.is_empty() && chosen.is_empty() { write(&table) } else { Ok(()) }
+    if options.is_empty() && chosen.is_empty() { write("likeness.md", &table) } else { Ok(()) }
+}
+
+/// Maps whose buildings are complete.
+const COMPLETE: [&str; 17] = [
+    "baltimore_county_suburb_east",
+    "berlin_borsigwalde",
+    "copenhagen_east",
+    "duesseldorf_bilk",
+    "garmisch",
+    "heidelberg_altstadt",
+    "helsinki_center",
+    "karlsruhe_kirchfeld",
+    "lauf_pegnitz",
+    "london_holborn",
+    "monaco_menton_east",
+    "munich_center",
+    "nyc_greenwich_village",
+    "porto_east",
+    "skopje_center",
+    "tokyo_ichigaya",
+    "tokyo_kanda",
+];
+
+/// Runs the protocol of buildings over the shared maps whose buildings are complete; without options the
+/// table goes into docs/blocks.md.
+pub fn blocks(options: &[&str]) -> Outcome {
+    let maps: Vec<PathBuf> = maps()?.into_iter().filter(|map| is_chosen(map, &COMPLETE)).collect();
+    if maps.is_empty() {
+        println!("skipped: no shared data");
+        return Ok(());
+    }
+    let build = "build --release --locked --package exurb_benches --bin exurb_blocks_protocol";
+    shell::run(&mut cargo(build))?;
+    let mut protocol = std::process::Command::new(target().join("release/exurb_blocks_protocol"));
+    let table = output_of(protocol.args(options).args(maps))?;
+    println!("{table}");
+    if options.is_empty() { write("blocks.md", &table) } else { Ok(()) }
 }
 
 /// Measures the cities and towns of the panel and writes what `exurb compare` has built in.
@@ -62,12 +100,12 @@ fn is_chosen(map: &std::path::Path, names: &[&str]) -> bool {
     names.is_empty() || names.iter().any(|name| file.split('.').next() == Some(*name))
 }
 
-fn write(table: &str) -> Outcome {
-    let path = root().join("docs/likeness.md");
+fn write(page: &str, table: &str) -> Outcome {
+    let path = root().join("docs").join(page);
     let page = std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
     let parts =
         page.split_once(BEGIN).and_then(|(head, rest)| Some((head, rest.split_once(END)?.1)));
-    let (head, tail) = parts.ok_or("docs/likeness.md lacks the marks of the table")?;
+    let (head, tail) = parts.ok_or(format!("{} lacks the marks of the table", path.display()))?;
     let page = format!("{head}{BEGIN}{}\n{END}{tail}", table.trim_end());
     std::fs::write(&path, page).map_err(|e| e.to_string())
 }

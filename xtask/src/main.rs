@@ -11,6 +11,7 @@
 //! | `maps` | grows a city from every shared map and writes docs/maps.md |
 //! | `likeness [OPTION ...]` | scores what is grown from every shared map; `--inside` tunes |
 //! | `gallery [FIGURE]` | makes the pictures of docs/gallery |
+//! | `blocks [OPTION ...]` | scores the blocks of one half of a map filled from the other |
 //! | `panel` | measures the built-in panel of `exurb compare` anew |
 //! | `licences` | every dependency has a licence on the list |
 //!
@@ -34,7 +35,7 @@ mod tools;
 use std::process::ExitCode;
 
 const USAGE: &str = "usage: cargo xtask check | test | bless | bench [STAGE] | \
-                     fuzz [TARGET] [SECONDS] | maps | likeness [OPTION ...] | panel | \
+                     fuzz [TARGET] [SECONDS] | maps | likeness [OPTION ...] | blocks [OPTION ...] | panel | \
                      gallery [FIGURE] | arrows | licences";
 
 fn main() -> ExitCode {
@@ -51,6 +52,7 @@ fn main() -> ExitCode {
         ["likeness", ref options @ ..] => likeness::run(options),
         ["gallery"] => gallery::run(None),
         ["gallery", figure] => gallery::run(Some(figure)),
+        ["blocks", ref options @ ..] => likeness::blocks(options),
         ["panel"] => likeness::panel(),
         ["arrows"] => arrows::run(),
         ["licences"] => licences::run(),
