@@ -1,8 +1,10 @@
 //! The work that benches measure, a process each; prints what it did as one line of JSON:
 //! `read MAP`, `grow EXAMPLE SIDE_M`, `faces MAP LINES.txt`, `measures MAP STREETS.json`,
-//! `likeness MAP MAP`.
+//! `likeness MAP MAP`, `retarget MAP`, `query MAP...`, `outlines FILE.json`, `cadastre MAP FILE.json`.
 
 #![allow(clippy::print_stdout, reason = "its output is the result")]
+
+mod blocks_work;
 
 use std::error::Error;
 use std::fmt::Write;
@@ -28,6 +30,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         ["faces", map, lines] => faces(map.as_ref(), lines.as_ref())?,
         ["measures", map, streets] => measures(map.as_ref(), streets.as_ref())?,
         ["likeness", one, other] => likeness(one.as_ref(), other.as_ref())?,
+        ["retarget", map] => blocks_work::retarget(&city_of(map.as_ref())?)?,
+        ["query", ref maps @ ..] => {
+            let cities = maps.iter().map(|map| city_of(map.as_ref()));
+            blocks_work::query(&cities.collect::<Result<Vec<City>, _>>()?)?
+        }
+        ["outlines", file] => blocks_work::outlines(file.as_ref())?,
+        ["cadastre", map, file] => blocks_work::cadastre(&city_of(map.as_ref())?, file.as_ref())?,
         _ => return Err("no such work".into()),
     };
     println!("{said}");

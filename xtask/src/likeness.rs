@@ -1,13 +1,14 @@
 //! `likeness`: the protocol over every shared map, and its table in docs/likeness.md; `yardstick`: the
-//! table there that shows whether the scale behaves; `panel`: the built-in panel of `exurb compare`,
-//! measured anew.
+//! table there that shows whether the scale behaves; `blocks`: the protocol of buildings, in
+//! docs/blocks.md; `panel`: the built-in panel of `exurb compare`, measured anew.
 
 use std::path::PathBuf;
 
 use crate::shell::{self, Outcome, cargo, output_of, root, target};
 
-/// The page with the tables.
-const PAGE: &str = "docs/likeness.md";
+/// The pages with the tables.
+const LIKENESS: &str = "docs/likeness.md";
+const BLOCKS: &str = "docs/blocks.md";
 
 /// Runs the protocol with these options over the shared maps, or over those whose names follow
 /// `--maps`. Without options the table goes into docs/likeness.md.
@@ -27,10 +28,47 @@ pub fn run(options: &[&str]) -> Outcome {
     let table = output_of(protocol.args(options).args(maps))?;
     println!("{table}");
     if options.is_empty() && chosen.is_empty() {
-        write("protocol", table.trim_end())
+        write(LIKENESS, "protocol", table.trim_end())
     } else {
         Ok(())
     }
+}
+
+/// Maps whose buildings are complete.
+const COMPLETE: [&str; 17] = [
+    "baltimore_county_suburb_east",
+    "berlin_borsigwalde",
+    "copenhagen_east",
+    "duesseldorf_bilk",
+    "garmisch",
+    "heidelberg_altstadt",
+    "helsinki_center",
+    "karlsruhe_kirchfeld",
+    "lauf_pegnitz",
+    "london_holborn",
+    "monaco_menton_east",
+    "munich_center",
+    "nyc_greenwich_village",
+    "porto_east",
+    "skopje_center",
+    "tokyo_ichigaya",
+    "tokyo_kanda",
+];
+
+/// Runs the protocol of buildings over the shared maps whose buildings are complete; without options the
+/// table goes into docs/blocks.md.
+pub fn blocks(options: &[&str]) -> Outcome {
+    let maps: Vec<PathBuf> = maps()?.into_iter().filter(|map| is_chosen(map, &COMPLETE)).collect();
+    if maps.is_empty() {
+        println!("skipped: no shared data");
+        return Ok(());
+    }
+    let build = "build --release --locked --package exurb_benches --bin exurb_blocks_protocol";
+    shell::run(&mut cargo(build))?;
+    let mut protocol = std::process::Command::new(target().join("release/exurb_blocks_protocol"));
+    let table = output_of(protocol.args(options).args(maps))?;
+    println!("{table}");
+    if options.is_empty() { write(BLOCKS, "protocol", table.trim_end()) } else { Ok(()) }
 }
 
 /// Scores spoilt copies, other cities and streets by rule against the cities of the panel.
@@ -44,7 +82,7 @@ pub fn yardstick() -> Outcome {
     let mut exurb = std::process::Command::new(target().join("release/exurb"));
     let table = output_of(exurb.args(["compare", "--quiet", "--yardstick"]).args(maps))?;
     println!("{table}");
-    write("yardstick", &format!("```text\n{}\n```", table.trim_end()))
+    write(LIKENESS, "yardstick", &format!("```text\n{}\n```", table.trim_end()))
 }
 
 /// Measures the cities and towns of the panel and writes what `exurb compare` has built in.
@@ -84,13 +122,13 @@ fn is_chosen(map: &std::path::Path, names: &[&str]) -> bool {
 }
 
 /// Puts a table between its marks in the page.
-fn write(name: &str, table: &str) -> Outcome {
+fn write(page_name: &str, name: &str, table: &str) -> Outcome {
     let (begin, end) = (format!("<!-- {name}: begin -->\n"), format!("<!-- {name}: end -->\n"));
-    let path = root().join(PAGE);
+    let path = root().join(page_name);
     let page = std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
     let parts =
         page.split_once(&begin).and_then(|(head, rest)| Some((head, rest.split_once(&end)?.1)));
     let (head, tail) =
-        parts.ok_or_else(|| format!("{PAGE} lacks the marks of the {name} table"))?;
+        parts.ok_or_else(|| format!("{page_name} lacks the marks of the {name} table"))?;
     std::fs::write(&path, format!("{head}{begin}{table}\n{end}{tail}")).map_err(|e| e.to_string())
 }

@@ -12,6 +12,7 @@
 //! | `likeness [OPTION ...]` | scores what is grown from every shared map; `--inside` tunes |
 //! | `yardstick` | makes the table anew that shows whether the scale of likeness behaves |
 //! | `gallery [FIGURE]` | makes the pictures of docs/gallery |
+//! | `blocks [OPTION ...]` | scores the blocks of one half of a map filled from the other |
 //! | `panel` | measures the built-in panel of `exurb compare` anew |
 //! | `licences` | every dependency has a licence on the list |
 //!
@@ -36,7 +37,7 @@ use std::process::ExitCode;
 
 const USAGE: &str = "usage: cargo xtask check | test | bless | bench [STAGE] | \
                      fuzz [TARGET] [SECONDS] | maps | likeness [OPTION ...] | yardstick | panel | \
-                     gallery [FIGURE] | arrows | licences";
+                     blocks [OPTION ...] | gallery [FIGURE] | arrows | licences";
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
@@ -53,6 +54,7 @@ fn main() -> ExitCode {
         ["yardstick"] => likeness::yardstick(),
         ["gallery"] => gallery::run(None),
         ["gallery", figure] => gallery::run(Some(figure)),
+        ["blocks", ref options @ ..] => likeness::blocks(options),
         ["panel"] => likeness::panel(),
         ["arrows"] => arrows::run(),
         ["licences"] => licences::run(),

@@ -1,12 +1,16 @@
-//! Blocks filled by example: parcels and footprints.
+//! Blocks filled by example: layouts, parcels and footprints.
 //!
 //! | room | what it does |
 //! |---|---|
+//! | [`transfer`] | moves the layouts of like example blocks into blocks as a whole |
+//! | [`retarget`] | lays layouts out anew in another outline; [`retarget::Editor`] for a dragging hand |
+//! | [`auto`] | chooses for each block between these two, and parcels with a footprint each |
 //! | [`parcels`] | cuts blocks into lots that front on their streets |
 //! | [`footprints`] | stands one building on each lot |
 //!
-//! Both learn from whole blocks of the example ([`library`]) and let each new block take after one
-//! of them. [`operations()`] lists the rooms for the command line, recipes and the studio.
+//! The first three share the layouts of example blocks ([`database`]), their choice for all blocks
+//! together ([`choice`]) and what brings footprints apart and off the street ([`refine`]). The last two
+//! learn from whole blocks, too ([`library`]), and let each new block take after one of them. [`operations()`] lists the rooms for the command line, recipes and the studio.
 
 pub mod auto;
 pub mod choice;
@@ -30,6 +34,7 @@ mod scoped;
 mod test_city;
 pub mod transfer;
 
+pub use lay::{Laid, Spacing};
 pub use motion::Motion;
 pub use operations::operations;
 pub use outline::plain_outline;

@@ -1,7 +1,7 @@
 //! One example block tried in one block.
 
-use exurb_city::Block;
-use exurb_geom::{GridPoint, Polygon, Rigid};
+use exurb_city::{Block, Class, StreetGraph};
+use exurb_geom::{GridPoint, Polygon, Rigid, offset, polyline};
 use exurb_match::{Match, Outline, align};
 
 use super::descriptor::Descriptor;
@@ -54,15 +54,43 @@ pub struct Site<'a> {
     pub kerb: Kerb,
     /// What reaches into it and stays.
     pub standing: Vec<Polygon>,
+    /// Ends of pedestrian streets in it, which its outline leaves out for the doors that a map has there.
+    pub ends: Vec<Polygon>,
 }
 
 impl<'a> Site<'a> {
     /// The site of a block with what stays standing in it.
-    pub fn of(block: &'a Block, standing: Vec<Polygon>) -> Self {
+    pub fn of(block: &'a Block, standing: Vec<Polygon>, streets: &StreetGraph) -> Self {
         let ring = crate::outline::plain_outline(&block.polygon);
         let outline = Outline::of(&ring);
-        Self { block, ring, outline, kerb: Kerb::of(&block.polygon), standing }
+        Self {
+            block,
+            ring,
+            outline,
+            kerb: Kerb::of(&block.polygon),
+            standing,
+            ends: ends_in(block, streets),
+        }
     }
+}
+
+/// The last metres of the block's pedestrian dead ends, as long as the street is wide.
+fn ends_in(block: &Block, streets: &StreetGraph) -> Vec<Polygon> {
+    let mut out = Vec::new();
+    for id in &block.dead_ends {
+        let Some(edge) = streets.get_edge(*id).filter(|e| e.data.class == Class::Pedestrian) else {
+            continue;
+        };
+        let (mut line, half_m) = (edge.line_m(), edge.data.width_m() / 2.0);
+        for end in [edge.from, edge.to] {
+            if streets.degree(end) == 1 {
+                let tip = polyline::part(&line, 0.0, half_m);
+                out.extend(offset::carriageway(&tip, half_m, offset::Cap::Butt));
+            }
+            line.reverse();
+        }
+    }
+    out
 }
 
 /// Outlines that lie this near to each other, root mean square, are the same, in metres.
@@ -83,7 +111,11 @@ pub fn tried(
     let deviation_m = align::deviation_m(&motion, outline, &site.ring);
     let is_same = deviation_m < SAME_M && found.shape_cost < 0.05;
     let (block, kerb) = (&site.block.polygon, &site.kerb);
-    let ground = Ground { block, kerb, standing: &site.standing, at_home: is_same };
+    let mut standing = site.standing.clone();
+    if !is_same {
+        standing.extend(site.ends.iter().cloned());
+    }
+    let ground = Ground { block, kerb, standing: &standing, at_home: is_same };
     let spacing = Spacing { pavement_m: choosing.pavement, tolerance: choosing.tolerance };
     let transferred = || {
         let (footprints, things) = layout.wished(motion.into());

@@ -95,8 +95,10 @@ pub fn choose(
     let serving = |block: &Block| styles.at(block.polygon.interior_point());
     let open = OpenLand::of(city);
     let standing = Standing::of(city, blocks, wanted);
-    let site =
-        |i: usize| wanted[i].then(|| Site::of(&blocks[i], standing.within(&blocks[i].polygon)));
+    let site = |i: usize| {
+        let within = || standing.within(&blocks[i].polygon);
+        wanted[i].then(|| Site::of(&blocks[i], within(), &city.streets))
+    };
     let mut sites: Vec<Option<Site<'_>>> = (0..blocks.len()).into_par_iter().map(site).collect();
     run.check()?;
     let same: Vec<Option<Match>> =
