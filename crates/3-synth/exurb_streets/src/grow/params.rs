@@ -98,7 +98,7 @@ pub struct Params {
 impl Default for Params {
     fn default() -> Self {
         Self {
-            continuation: 0.5,
+            continuation: 0.55,
             procedural: 0.0,
             starts: 1,
             start: Vec::new(),
