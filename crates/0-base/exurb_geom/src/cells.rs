@@ -186,7 +186,12 @@ mod tests {
             let corners = cells.corners((column, row)).map(|post| cells.post(post));
             let holds = |p: Vec2| polygon.contains(GridPoint::round(p));
             match kind {
-                Cell::Rim { middle } => assert_eq!(middle, holds(cells.middle((column, row)))),
+                // A middle on the boundary itself may count as either.
+                Cell::Rim { middle } => {
+                    let at = cells.middle((column, row));
+                    let on_boundary = polygon.boundary_distance_m(at) < 0.002;
+                    assert!(on_boundary || middle == holds(at), "{at}");
+                }
                 Cell::Inside => {
                     assert_eq!(corners.map(holds), [true; 4]);
                     area_m2 += 6.25;
