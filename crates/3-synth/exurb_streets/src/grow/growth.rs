@@ -22,7 +22,7 @@ use super::error::Error;
 use super::layer::{ChainEnd, NodeKind};
 use super::learn::Style;
 use super::network::{Coherent, Landing, Network, Piece, Vertex, Wish};
-use super::params::Params;
+use super::params::{Order, Params};
 use super::plan::Plan;
 use super::relief::{Relief, Verdict};
 use super::seams::{Leaving, Seams};
@@ -160,7 +160,7 @@ impl<'a> Growth<'a> {
                 Some(Place::Node(node)) => self.turn(node),
                 Some(Place::Branch(node, end)) => placing::branch(self, node, end),
                 Some(Place::Away(node, direction)) => drawing::away(self, node, direction),
-                None => match self.frontier.pop_front() {
+                None => match self.next_open() {
                     Some(Open::Node(node)) => self.break_off(node),
                     Some(Open::Street(number)) => {
                         if let Some(leaving) = self.seams.take(number) {
@@ -171,6 +171,35 @@ impl<'a> Growth<'a> {
                 },
             }
         }
+    }
+
+    /// Takes the place where the next piece may begin.
+    fn next_open(&mut self) -> Option<Open> {
+        /// Of so many that have waited longest one is chosen.
+        const CHOSEN_AMONG: usize = 64;
+        /// Streets that wait this near to a place wait for a piece there, in metres.
+        const ANSWERED_M: f64 = 150.0;
+        let start_m = |p: Vec2| {
+            let starts = self.plan.starts.iter().map(|start| start.at.distance(p));
+            starts.fold(f64::INFINITY, f64::min)
+        };
+        let cost = |p: Vec2| match self.params.order {
+            Order::First => 0.0,
+            Order::Nearest => start_m(p),
+            Order::Fit => -(self.seams.near(p, ANSWERED_M).count() as f64),
+        };
+        let place = |open: &Open| match open {
+            Open::Node(node) => self.net.graph.get_node(*node).map(|n| n.at.to_m()),
+            Open::Street(number) => self.seams.exit(*number),
+        };
+        if self.params.order == Order::First {
+            return self.frontier.pop_front();
+        }
+        let waiting = self.frontier.iter().take(CHOSEN_AMONG).enumerate();
+        // What has gone since costs least, so that it is soon out of the way.
+        let costs = waiting.map(|(i, open)| (i, place(open).map_or(f64::NEG_INFINITY, cost)));
+        let best = costs.min_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)))?.0;
+        self.frontier.remove(best)
     }
 
     /// One turn inside a piece: follows the example, or leaves the place for later.

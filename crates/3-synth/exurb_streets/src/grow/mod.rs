@@ -1,14 +1,18 @@
 //! Growth of streets by patches of an example.
 //!
 //! Source: Nishida, Garcia-Dorado, Aliaga 2015, *Example-Driven Procedural Urban Roads*, Computer
-//! Graphics Forum, sections 4.1-4.5.
+//! Graphics Forum, sections 3 to 5.
 //!
 //! Steps: 1 the example is prepared ([`prepare`]) and divided into main and local streets
 //! ([`layer`]); 2 both are cut into patches ([`detect`], [`patch`]) and measured; 3 main streets grow
 //! from the starts over the whole target ([`growth`]: [`placing`] copies, [`drawing`] chooses,
 //! [`procedural`] makes and connects); 4 local streets grow in every cell between them ([`cells`]);
 //! both passes fill what was left empty ([`fill`]); 5 dangling ends go and the target cuts
-//! ([`finish`]).
+//! ([`finish`]); 6 local edits bring the whole nearer to the example ([`polish`]).
+//!
+//! Which example grows where, and how it is turned, says the [`plan`], with [`domains`] where areas
+//! have examples of their own; what is given and what lies around, the [`ground`]; what water and
+//! slopes allow, its [`relief`], and [`bridges`] cross the water.
 //!
 //! Departures: a patch whose connectors would cross a street is not refused, they end there in a
 //! junction; local streets never leave their cell, so that cells grow on all cores and the result
@@ -82,7 +86,7 @@ impl Operation for Grow {
         stage: "streets",
         method: "grow",
         summary: "grows streets by copying patches of an example, and from its statistics",
-        source: "nishida2015, sections 4.1-4.5",
+        source: "nishida2015, sections 3-5",
         needs_example: true,
     };
     type Params = Params;

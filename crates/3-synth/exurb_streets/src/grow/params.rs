@@ -4,6 +4,19 @@ use exurb_operation::{DomainsFile, Params as _};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+/// Where the next piece begins, of all places where one may.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Order {
+    /// Where a place has waited longest: breadth first, as in the paper.
+    #[default]
+    First,
+    /// Nearest to a start, of those that have waited longest.
+    Nearest,
+    /// Where most streets wait for an answer, of those that have waited longest.
+    Fit,
+}
+
 /// Growth of streets by patches of an example.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
@@ -15,6 +28,8 @@ pub struct Params {
     /// How often a place grows from statistics although a patch would fit: 0 never, 1 always.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub procedural: f64,
+    /// Where the next piece begins, of all places where one may.
+    pub order: Order,
     /// Number of places where growth begins, spread over the target; the first is its middle.
     #[schemars(range(min = 1, max = 1000))]
     pub starts: u32,
@@ -100,6 +115,7 @@ impl Default for Params {
         Self {
             continuation: 0.55,
             procedural: 0.0,
+            order: Order::First, // all three score alike within the examples
             starts: 1,
             start: Vec::new(),
             areas: DomainsFile::default(),

@@ -71,6 +71,11 @@ impl Seams {
         Some(leaving)
     }
 
+    /// Where the street of that number leaves its piece; `None` when it waits no more.
+    pub fn exit(&self, number: usize) -> Option<Vec2> {
+        self.waiting[number].as_ref().map(|leaving| leaving.exit)
+    }
+
     /// Those that wait within `radius_m` of `p`.
     pub fn near(&self, p: Vec2, radius_m: f64) -> impl Iterator<Item = (usize, &Leaving)> {
         let found = self.exits.within(p, radius_m).into_iter();
