@@ -175,10 +175,10 @@ impl<'a> Document<'a> {
         let mut tags = Some(tags);
         for (i, ring) in rings.iter().map(AsRef::as_ref).enumerate() {
             let mut nodes = Vec::with_capacity(ring.len() + 1);
-            for p in ring {
-                let known = corners.get(p).copied();
-                let node = known.unwrap_or_else(|| self.node(*p, Vec::new()));
-                corners.insert(*p, node);
+            for p in spaced(ring) {
+                let known = corners.get(&p).copied();
+                let node = known.unwrap_or_else(|| self.node(p, Vec::new()));
+                corners.insert(p, node);
                 nodes.push(node);
             }
             nodes.push(nodes[0]);
@@ -190,6 +190,21 @@ impl<'a> Document<'a> {
             self.relations.push(OutRelation { members, tags });
         }
     }
+}
+
+/// A ring without corners that lie so near to the one before that OSM's centimetre could swap them.
+fn spaced(ring: &[GridPoint]) -> Vec<GridPoint> {
+    const APART_M: f64 = 0.03;
+    let mut out: Vec<GridPoint> = Vec::with_capacity(ring.len());
+    for p in ring {
+        if out.last().is_none_or(|last| last.distance_m(*p) >= APART_M) {
+            out.push(*p);
+        }
+    }
+    while out.len() > 1 && out[0].distance_m(out[out.len() - 1]) < APART_M {
+        out.pop();
+    }
+    if out.len() < 3 { ring.to_vec() } else { out }
 }
 
 /// In 1e-7 degrees.
@@ -252,4 +267,18 @@ fn building_tags(building: &exurb_city::Building) -> Vec<Tag> {
 /// To the millimetre, without trailing zeros.
 fn number(value: f64) -> String {
     ((value * 1000.0).round() / 1000.0).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn corners_within_osm_s_centimetre_become_one() {
+        let m = |x: f64, y: f64| GridPoint::m(x, y);
+        let ring = [m(0.0, 0.0), m(9.0, 0.0), m(9.006, 0.001), m(9.0, 9.0), m(0.001, 0.004)];
+        assert_eq!(spaced(&ring), [m(0.0, 0.0), m(9.0, 0.0), m(9.0, 9.0)]);
+        let tiny = [m(0.0, 0.0), m(0.01, 0.0), m(0.0, 0.01)];
+        assert_eq!(spaced(&tiny), tiny);
+    }
 }
