@@ -115,7 +115,7 @@ impl Default for Params {
         Self {
             continuation: 0.55,
             procedural: 0.0,
-            order: Order::First, // scores best within the examples, see docs/likeness.md
+            order: Order::First, // scores best within the examples, see docs/growth.md
             starts: 1,
             start: Vec::new(),
             areas: DomainsFile::default(),
