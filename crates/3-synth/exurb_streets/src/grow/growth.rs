@@ -268,13 +268,13 @@ impl<'a> Growth<'a> {
     /// Claims ground for a piece that begins.
     pub fn begin(&mut self, piece: &Coherent) {
         let extent = &self.plan.examples[piece.example].extent;
-        self.claims.begin(piece, |p| extent.contains(GridPoint::round(piece.original(p))));
+        self.claims.begin(piece, |p| extent.covers(piece.original(p)));
     }
 
     /// Does growth of `piece` go on at `p`?
     pub fn holds(&mut self, piece: &Coherent, p: Vec2) -> bool {
         let extent = &self.plan.examples[piece.example].extent;
-        self.claims.holds(piece, p, |p| extent.contains(GridPoint::round(piece.original(p))))
+        self.claims.holds(piece, p, |p| extent.covers(piece.original(p)))
     }
 
     /// Queues a node that has just been made, unless it is to stay as it is.

@@ -10,12 +10,17 @@ use exurb_graph::{EdgeId, Faces, NodeId};
 use exurb_measure::statistics::{StreetStatistics, street_statistics};
 
 use super::error::Error;
+use super::extent::Extent;
 use super::fit::Samples;
 use super::layer::{ChainEnd, Layer};
 use super::params::{self, Params};
 use super::patch::{self, Patch};
 use super::polish::Profile;
 use super::{detect, fill, prepare};
+
+/// Ground of an example farther than this from every street is sea or country that no piece brings
+/// along, in metres.
+const BROUGHT_M: f64 = 200.0;
 
 /// What one example teaches.
 #[derive(Debug)]
@@ -31,7 +36,7 @@ pub struct Vocabulary {
     /// Points along all its streets.
     pub samples: Samples,
     /// The ground it covers.
-    pub extent: Polygon,
+    pub extent: Extent,
     /// Where growth begins in the example unless told otherwise.
     pub center: Vec2,
     /// Side of a square as large as a large block (the upper quartile), metres.
@@ -191,7 +196,8 @@ pub fn learn(city: &City, params: &Params) -> Result<Vocabulary, Error> {
     let gates = exurb_city::laws::gates(city);
     let (center, large_block_m) = (center_of(&graph), large_block_m(&graph));
     let samples = Samples::of(graph.edges().map(|(id, e)| (e.line_m(), is_main[id.index()])));
-    let extent = city.target.clone();
+    let lines = graph.edges().map(|(_, edge)| edge.line_m());
+    let extent = Extent::of(&city.target, lines, BROUGHT_M);
     let relief = city.terrain.as_ref().and_then(|t| t.relief(&city.target));
     let relief = relief.map(|r| (r.mean_m, r.slope));
     Ok(Vocabulary {

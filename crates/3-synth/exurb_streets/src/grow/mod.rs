@@ -31,6 +31,7 @@ mod domains;
 mod drawing;
 mod edge;
 mod error;
+mod extent;
 mod fill;
 mod finish;
 mod fit;
