@@ -39,7 +39,7 @@ pub struct Vocabulary {
     pub extent: Extent,
     /// Where growth begins in the example unless told otherwise.
     pub center: Vec2,
-    /// Side of a square as large as a large block (the upper quartile), metres.
+    /// Side of a square as large as a large block, metres: half of the ground lies in smaller ones.
     pub large_block_m: f64,
     /// Values of the example's likeness gates.
     pub gates: BTreeMap<String, f64>,
@@ -224,13 +224,20 @@ fn spacing_m(graph: &StreetGraph, keep: impl Fn(EdgeId) -> bool) -> f64 {
     widths.get(widths.len() / 4).map_or(0.0, |width| width / 2.0)
 }
 
-/// Side of a square as large as the upper quartile of the blocks that are no islands.
+/// Side of a square as large as a large block: half of the ground of blocks that are no islands lies in
+/// smaller ones.
 fn large_block_m(graph: &StreetGraph) -> f64 {
     let faces = Faces::of(graph, |_| true).list;
     let blocks = faces.iter().filter(|f| f.polygon.mean_width_m() >= block::ISLAND_WIDTH_M);
     let mut areas: Vec<f64> = blocks.map(|f| f.polygon.area_m2()).collect();
     areas.sort_by(f64::total_cmp);
-    areas.get(areas.len() * 3 / 4).map_or(0.0, |area| area.sqrt())
+    let total: f64 = areas.iter().sum();
+    let mut sum = 0.0;
+    let large = areas.into_iter().find(|area| {
+        sum += area;
+        sum >= total / 2.0
+    });
+    large.map_or(0.0, f64::sqrt)
 }
 
 fn street_index(graph: &StreetGraph, keep: impl Fn(EdgeId) -> bool) -> SegmentIndex {

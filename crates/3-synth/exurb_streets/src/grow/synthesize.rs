@@ -21,7 +21,7 @@ use super::{bridges, fill, finish, polish, unreached};
 
 /// Growth goes on beyond the target by a large block of the example, so that blocks at its edge close
 /// and its edge looks like its middle; by no more and no less than this.
-const MARGIN_M: std::ops::RangeInclusive<f64> = 90.0..=350.0;
+const MARGIN_M: std::ops::RangeInclusive<f64> = 90.0..=450.0;
 
 /// The margin that growth needs around a target in the open.
 pub fn margin_m(examples: &[Vocabulary]) -> f64 {
