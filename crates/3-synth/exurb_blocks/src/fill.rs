@@ -14,6 +14,7 @@ use crate::choice::{Candidate, Choice, Choosing, Learned, Way, Ways, choose};
 use crate::database::Layout;
 use crate::filling::{Filling, written};
 use crate::kerb::Kerb;
+use crate::lawful::lawful;
 use crate::library::are_near;
 use crate::refine::Why;
 use crate::scoped::Scoped;
@@ -88,7 +89,7 @@ pub fn fill(
         fillings.push(made);
     }
     tally.into_iter().for_each(|(what, count)| run.tally(&what, count));
-    Ok(Filled { edit: written(city, blocks, fillings), left })
+    Ok(Filled { edit: lawful(city, written(city, blocks, fillings), run), left })
 }
 
 /// What is to be told of one block.

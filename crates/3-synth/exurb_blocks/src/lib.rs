@@ -19,6 +19,7 @@ mod fill;
 mod filling;
 pub mod footprints;
 mod kerb;
+mod lawful;
 mod lay;
 pub mod library;
 mod motion;

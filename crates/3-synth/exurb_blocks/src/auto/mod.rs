@@ -10,6 +10,7 @@ pub use params::Params;
 use crate::choice::{Learned, Ways};
 use crate::fill::{Limits, fill};
 use crate::footprints::{self, Footprints};
+use crate::lawful::lawful;
 use crate::library::Library;
 use crate::parcels::{self, Parcels};
 use crate::retarget::Settings;
@@ -71,13 +72,14 @@ impl Operation for Auto {
             true => city,
             false => Footprints::edit(&city, &rest, &learned.library, &stand, run)?.apply(&city),
         };
-        Ok(Edit {
+        let edit = Edit {
             blocks: Some(city.blocks.to_vec()),
             parcels: Some(city.parcels.to_vec()),
             buildings: Some(city.buildings.to_vec()),
             features: Some(city.features.to_vec()),
             land_use: Some(city.land_use.to_vec()),
             ..Edit::default()
-        })
+        };
+        Ok(lawful(&city, edit, run))
     }
 }

@@ -29,6 +29,7 @@ pub use error::Error;
 pub use params::Params;
 
 use crate::kerb::Kerb;
+use crate::lawful::lawful;
 use crate::library::{BuildingSample, Donors, ExampleBlock, Library, OpenLand};
 use crate::scoped::Scoped;
 use lot::Lot;
@@ -103,7 +104,8 @@ impl Operation for Footprints {
         for (building, id) in buildings.iter_mut().zip(1..) {
             building.id = id;
         }
-        Ok(Edit { buildings: Some(buildings), ..Edit::default() })
+        let edit = Edit { buildings: Some(buildings), ..Edit::default() };
+        Ok(lawful(city, edit, run))
     }
 }
 
