@@ -50,7 +50,7 @@ pub fn lay(city: &mut City, path: &Path, around_m: f64, seed: u64) -> Result<(),
 }
 
 enum Drawn {
-    Polygons(Vec<(SketchedUse, Polygon)>),
+    Polygons { list: Vec<(SketchedUse, Polygon)>, bounds: Bounds },
     Painted { image: Image, bounds: Bounds },
 }
 
@@ -69,13 +69,15 @@ impl Drawn {
             })?;
             out.push((kind, polygon));
         }
-        Ok(Self::Polygons(out))
+        // What touches the edge goes on beyond it.
+        let bounds = city.target.bounds().grown(-0.5);
+        Ok(Self::Polygons { list: out, bounds })
     }
 
     fn use_at(&self, p: Vec2) -> SketchedUse {
         match self {
-            Self::Polygons(list) => {
-                let at = GridPoint::round(p);
+            Self::Polygons { list, bounds } => {
+                let at = GridPoint::round(p.clamp(bounds.min, bounds.max));
                 let over = list.iter().rev().find(|(_, polygon)| polygon.contains(at));
                 over.map_or(SketchedUse::Flat, |(kind, _)| *kind)
             }

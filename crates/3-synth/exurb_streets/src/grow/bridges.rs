@@ -122,7 +122,12 @@ fn crossing(growth: &Growth, number: usize, ford: &Ford, turn_rad: f64) -> Optio
     };
     let end = line[line.len() - 1];
     let is_free = line.len() == 2 && probe.landing == Landing::Free;
-    if !growth.claims.is_inside(end) || is_free && !growth.relief.bears(end) {
+    // Where the map ends the other side is not known: there may be none.
+    let landing = at + direction * (far + DECK_M);
+    if !growth.relief.is_known(landing)
+        || !growth.claims.is_inside(end)
+        || is_free && !growth.relief.bears(end)
+    {
         return None;
     }
     let landing_turn = match probe.landing {

@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use exurb_city::{Area, City, Land};
-use exurb_geom::{Vec2, polyline, trig};
+use exurb_geom::{GridPoint, Polygon, Vec2, polyline, trig};
 
 use super::params::Params;
 
@@ -32,6 +32,8 @@ pub struct Relief {
     parks: Option<Land>,
     most_slope: f64,
     most_grade: f64,
+    /// Beyond it nothing is known of water.
+    known: Polygon,
 }
 
 /// Areas of the parameters that streets leave alone.
@@ -65,12 +67,23 @@ impl Relief {
         let known = city.land_use.iter().filter(is_kept).cloned();
         kept.water = Arc::new(known.chain(parks(params)).collect());
         let parks = (!kept.water.is_empty()).then(|| Land::of(&kept));
-        Self { land, parks, most_slope: params.slope, most_grade: params.grade }
+        Self {
+            land,
+            parks,
+            most_slope: params.slope,
+            most_grade: params.grade,
+            known: city.target.clone(),
+        }
     }
 
     /// Is there any water?
     pub fn has_water(&self) -> bool {
         self.land.as_ref().is_some_and(Land::has_water)
+    }
+
+    /// Is it known whether `p` lies in water?
+    pub fn is_known(&self, p: Vec2) -> bool {
+        self.known.contains(GridPoint::round(p))
     }
 
     /// Does `p` lie in water or on ground kept free?

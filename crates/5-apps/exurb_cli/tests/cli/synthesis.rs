@@ -162,3 +162,52 @@ fn an_interrupt_ends_the_work_cleanly() {
     assert!(message.contains("stopped; nothing was written"), "{message}");
     assert!(listing(folder.path()).is_empty());
 }
+
+#[test]
+fn a_sketch_becomes_ground_and_given_streets_stay_in_a_scope() {
+    let folder = tempdir().unwrap();
+    // Degrees around the built-in grid's own place are as good as any.
+    let square = |west: f64, south: f64, side: f64, properties: Value| {
+        let ring = [[0.0, 0.0], [side, 0.0], [side, side], [0.0, side], [0.0, 0.0]]
+            .map(|[x, y]| [10.0 + west + x, 1.0 + south + y]);
+        serde_json::json!({
+            "type": "Feature", "properties": properties,
+            "geometry": { "type": "Polygon", "coordinates": [ring] },
+        })
+    };
+    let write = |name: &str, features: Vec<Value>| {
+        let document = serde_json::json!({ "type": "FeatureCollection", "features": features });
+        fs::write(folder.path().join(name), document.to_string()).unwrap();
+    };
+    let none = || serde_json::json!({});
+    write("target.geojson", vec![square(0.0, 0.0, 0.012, none())]);
+    let drawn = vec![
+        square(0.008, -0.01, 0.03, serde_json::json!({ "use": "mountain" })),
+        square(-0.02, -0.0195, 0.02, serde_json::json!({ "use": "water" })),
+        square(0.003, 0.007, 0.002, serde_json::json!({ "use": "park" })),
+    ];
+    write("sketch.geojson", drawn);
+    let run = |line: &str| exurb(folder.path(), &line.split(' ').collect::<Vec<_>>());
+    let grow = "streets grow -e builtin:grid --target target.geojson --terrain sketch.geojson";
+    let report = run(&format!("{grow} -o c.gpkg --json")).ends(0).json();
+    assert_eq!(report["valid"], true, "{report}");
+    assert_eq!(report["on_land"]["in_water_m"], 0.0);
+    assert!(report["on_land"]["steepest_grade"].as_f64().unwrap() <= 0.2);
+    assert!(report["terrain"]["highest"].as_f64().unwrap() > 30.0);
+
+    let path = serde_json::json!({
+        "type": "Feature", "properties": { "highway": "primary" },
+        "geometry": { "type": "LineString", "coordinates": [[10.004, 1.003], [10.0065, 1.0062]] },
+    });
+    write("fixed.geojson", vec![path]);
+    write("scope.geojson", vec![square(0.0035, 0.0025, 0.004, none())]);
+    let again = "streets grow c.gpkg -e builtin:saltlake --scope scope.geojson";
+    let report = run(&format!("{again} --fixed fixed.geojson -o d.gpkg --json")).ends(0).json();
+    assert_eq!(report["valid"], true, "{report}");
+    assert!(report["streets"]["km_by_class"]["primary"].as_f64().unwrap() > 0.4, "{report}");
+
+    write("wrong.geojson", vec![square(0.0, 0.0, 0.01, serde_json::json!({ "use": "lava" }))]);
+    let wrong = "streets grow -e builtin:grid --target target.geojson --terrain wrong.geojson";
+    let outcome = run(&format!("{wrong} -o e.gpkg"));
+    assert!(outcome.ends(2).err.contains("`use` is `lava`"));
+}
