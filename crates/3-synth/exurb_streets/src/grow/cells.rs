@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use exurb_city::Origin;
-use exurb_geom::{GridPoint, Vec2, polyline};
+use exurb_geom::{GridPoint, RowPolygon, Vec2, polyline};
 use exurb_graph::{Dart, EdgeId, Face, Faces, Graph, NodeId, noding};
 use exurb_operation::{Rng, Run, rng};
 use rayon::prelude::*;
@@ -73,6 +73,7 @@ pub fn grow(
         .filter(|f| f.polygon.area_m2() >= LEAST_AREA_M2)
         .filter(|f| area.contains(GridPoint::round(f.polygon.interior_point())))
         .collect();
+    let has_main = main.graph.edges().next().is_some();
     let grown: Vec<Result<Vec<Grown>, Error>> = cells
         .par_iter()
         .map(|face| {
@@ -83,7 +84,7 @@ pub fn grow(
                 Growth::new(net, plan, false, &face.polygon, &ground.relief, claims, rng);
             growth.queue.extend(seeds);
             enter(&mut growth, ground);
-            if main.graph.edge_count() == 0 {
+            if !has_main {
                 for start in &plan.starts {
                     synthesize::begin(&mut growth, start);
                 }
@@ -189,15 +190,22 @@ fn open_cell(
     }
 
     let mut places = Vec::new();
+    let inside = RowPolygon::new(&face.polygon);
     for &node in &border {
-        branches(&net, node, face, plan, &mut places);
+        branches(&net, node, &inside, plan, &mut places);
     }
     spaced(&net, face, graph, &local, street_m.max(30.0), &mut rng, &mut places);
     (net, places)
 }
 
 /// The example's own side streets at `node` that lead into the cell (Nishida et al. 2015, 4.4).
-fn branches(net: &Network, node: NodeId, face: &Face, plan: &Plan, places: &mut Vec<Place>) {
+fn branches(
+    net: &Network,
+    node: NodeId,
+    inside: &RowPolygon,
+    plan: &Plan,
+    places: &mut Vec<Place>,
+) {
     let n = net.graph.node(node);
     let (Some(link), Some(piece)) = (n.data.link, n.data.piece) else { return };
     let layer = &plan.examples[piece.example].local.layer;
@@ -207,7 +215,7 @@ fn branches(net: &Network, node: NodeId, face: &Face, plan: &Plan, places: &mut 
     }
     for &end in &layer.nodes[own].ends {
         let ahead = n.at.to_m() + piece.motion.apply(layer.direction(end)) * 5.0;
-        if face.polygon.contains(GridPoint::round(ahead)) {
+        if inside.contains(GridPoint::round(ahead)) {
             places.push(Place::Branch(node, end));
         }
     }

@@ -6,6 +6,9 @@
 //! meet its own, but nothing of theirs grows on. So every place has the streets, and the emptiness, of
 //! one place of the example.
 
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
 use exurb_geom::{Bounds, Polygon, Vec2};
 
 use super::network::Coherent;
@@ -27,7 +30,9 @@ pub struct Claims {
     rows: usize,
     /// Number of the piece, 0 for none, or [`OUTSIDE`]; row by row from the south-west.
     owners: Vec<u32>,
-    /// The pieces, by number from 1.
+    /// The pieces by number, from 1: those of the claims that this is a window of, which all windows
+    /// share, then its own.
+    shared: Arc<Vec<Option<Coherent>>>,
     pieces: Vec<Option<Coherent>>,
     /// Is there ground that nobody may have?
     has_water: bool,
@@ -54,12 +59,14 @@ impl Claims {
         let size = (bounds.size() / CELL_M).ceil().max(Vec2::ONE);
         let (columns, rows) = (size.x as usize, size.y as usize);
         let (owners, pieces) = (vec![0; columns * rows], vec![None]);
-        Self { min: bounds.min, columns, rows, owners, pieces, has_water: false }
+        let shared = Arc::default();
+        Self { min: bounds.min, columns, rows, owners, shared, pieces, has_water: false }
     }
 
     /// The part of these claims inside `area`; what is claimed in it further does not count here.
     pub fn window(&self, area: &Polygon) -> Self {
-        let mut part = Self { pieces: self.pieces.clone(), ..Self::new(area, |_| false) };
+        let shared = Arc::clone(&self.shared);
+        let mut part = Self { shared, pieces: Vec::new(), ..Self::new(area, |_| false) };
         part.has_water = self.has_water;
         for i in 0..part.owners.len() {
             if part.owners[i] == 0 {
@@ -95,17 +102,29 @@ impl Claims {
     /// The number of the next piece.
     pub fn next_id(&mut self) -> u32 {
         self.pieces.push(None);
-        self.pieces.len() as u32 - 1
+        (self.shared.len() + self.pieces.len()) as u32 - 1
+    }
+
+    /// Lets windows of these claims share the pieces so far.
+    pub fn share(&mut self) {
+        let mut all = (*self.shared).clone();
+        all.append(&mut self.pieces);
+        self.shared = Arc::new(all);
+    }
+
+    fn piece(&self, id: u32) -> Option<Coherent> {
+        let id = id as usize;
+        match id.checked_sub(self.shared.len()) {
+            Some(own) => self.pieces[own],
+            None => self.shared[id],
+        }
     }
 
     /// The pieces that claim ground here, in order of their numbers.
     pub fn pieces_here(&self) -> Vec<Coherent> {
-        let mut is_here = vec![false; self.pieces.len()];
-        for owner in self.owners.iter().filter(|owner| **owner != OUTSIDE) {
-            is_here[*owner as usize] = true;
-        }
-        let here = self.pieces.iter().zip(is_here).filter(|(_, is_here)| *is_here);
-        here.filter_map(|(piece, _)| *piece).collect()
+        let here: BTreeSet<u32> =
+            self.owners.iter().copied().filter(|owner| *owner != OUTSIDE).collect();
+        here.into_iter().filter_map(|id| self.piece(id)).collect()
     }
 
     /// No ground of `piece` lies farther than this from its beginning.
@@ -122,7 +141,8 @@ impl Claims {
 
     /// Claims the free ground that `piece` reaches from its origin and that `may_have` accepts.
     pub fn begin(&mut self, piece: &Coherent, may_have: impl Fn(Vec2) -> bool) {
-        self.pieces[piece.id as usize] = Some(*piece);
+        let own = piece.id as usize - self.shared.len();
+        self.pieces[own] = Some(*piece);
         let far = (self.columns + self.rows) as f64 * CELL_M;
         self.claim(piece.id, piece.at, piece.reach_m.min(far), may_have);
     }
@@ -161,7 +181,7 @@ impl Claims {
 
     /// Claims only what can be reached without crossing water: the other bank is for others.
     fn claim_on_foot(&mut self, id: u32, at: Vec2, radius_m: f64, may_have: impl Fn(Vec2) -> bool) {
-        let mut seen = std::collections::BTreeSet::new();
+        let mut seen = BTreeSet::new();
         let mut open: Vec<usize> = self.cell(at).into_iter().collect();
         seen.extend(open.iter().copied());
         while let Some(i) = open.pop() {

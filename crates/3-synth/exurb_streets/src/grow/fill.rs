@@ -5,7 +5,7 @@
 //! one than nearly all of these, and let a street set out towards them. Sea and hills of the example,
 //! far from every street, do not count: the target is flat land.
 
-use exurb_geom::{GridPoint, Polygon, SegmentIndex, Vec2, polyline};
+use exurb_geom::{GridPoint, Polygon, RowPolygon, SegmentIndex, Vec2, polyline};
 use exurb_operation::Run;
 
 use super::error::Error;
@@ -51,7 +51,7 @@ pub fn fill(growth: &mut Growth, empty_m: f64, run: &Run) -> Result<(), Error> {
             if growth.claims.owner(place).is_some()
                 || !growth.relief.bears(place)
                 || growth.net.edge_near(place, empty_m).is_some()
-                || area.boundary_distance_m(place) < empty_m * 0.3
+                || is_near_rim(growth, place, empty_m * 0.3)
             {
                 continue;
             }
@@ -66,6 +66,14 @@ pub fn fill(growth: &mut Growth, empty_m: f64, run: &Run) -> Result<(), Error> {
         }
     }
     Ok(())
+}
+
+/// Is the border of the ground near a place with no street near? A cell's border is in its network.
+fn is_near_rim(growth: &Growth, place: Vec2, near_m: f64) -> bool {
+    if growth.is_main {
+        return growth.area.boundary_distance_m(place) < near_m;
+    }
+    growth.net.rim_near(place, near_m)
 }
 
 /// Lays a street from `edge` at `at` towards `place` and queues its end.
@@ -121,7 +129,8 @@ fn scattered(area: &Polygon) -> impl Iterator<Item = Vec2> {
 
 /// Places of `area` on a square grid of `step_m`, row by row.
 fn places(area: &Polygon, step_m: f64) -> Vec<Vec2> {
-    let bounds = area.bounds();
+    let area = RowPolygon::new(area);
+    let bounds = area.polygon().bounds();
     let size = bounds.size() / step_m;
     let (columns, rows) = (size.x.ceil() as i32, size.y.ceil() as i32);
     (0..rows)

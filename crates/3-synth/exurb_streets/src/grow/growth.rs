@@ -10,7 +10,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use exurb_city::{Origin, Provenance, Street};
-use exurb_geom::{GridPoint, Polygon, Vec2, polyline, trig};
+use exurb_geom::{GridPoint, Polygon, RowPolygon, Vec2, polyline, trig};
 use exurb_graph::{EdgeId, NodeId};
 use exurb_measure::statistics::StreetStatistics;
 use exurb_operation::{Rng, Run};
@@ -44,6 +44,8 @@ pub struct Growth<'a> {
     pub is_main: bool,
     /// The area to fill: places outside are not grown on.
     pub area: &'a Polygon,
+    /// The same, for asking what lies inside.
+    pub inside: RowPolygon<'a>,
     /// What the user set.
     pub params: &'a Params,
     /// The stream of this area.
@@ -111,6 +113,7 @@ impl<'a> Growth<'a> {
             plan,
             is_main,
             area,
+            inside: RowPolygon::new(area),
             params: plan.params,
             rng,
             queue,
@@ -206,7 +209,7 @@ impl<'a> Growth<'a> {
     fn turn(&mut self, node: NodeId) {
         let Some(n) = self.net.graph.get_node(node) else { return };
         let (at, vertex) = (n.at, n.data.clone());
-        if vertex.outside || vertex.dead_end || !self.area.contains(at) {
+        if vertex.outside || vertex.dead_end || !self.inside.contains(at) {
             return;
         }
         let at = at.to_m();
@@ -350,7 +353,7 @@ impl<'a> Growth<'a> {
             .collect();
         let coherent = vertex.piece;
         let (to, mut edge) = self.net.commit(node, probe, piece, vertex)?;
-        if !self.area.contains(self.net.graph.node(to).at) {
+        if !self.inside.contains(self.net.graph.node(to).at) {
             self.net.graph.node_mut(to).data.outside = true;
         }
         for (at, link) in stops {
@@ -388,7 +391,7 @@ impl<'a> Growth<'a> {
         let is_free = probe.landing == Landing::Free;
         let piece = self.made(street, Origin::Procedural);
         let (to, _) = self.net.commit(node, probe, piece, Vertex::default())?;
-        if !self.area.contains(self.net.graph.node(to).at) {
+        if !self.inside.contains(self.net.graph.node(to).at) {
             self.net.graph.node_mut(to).data.outside = true;
         } else if is_free {
             self.frontier.push_back(Open::Node(to));
@@ -419,7 +422,7 @@ impl<'a> Growth<'a> {
             .darts(node)
             .iter()
             .any(|d| self.net.graph.edge(d.edge()).data.is_fixed());
-        on_border && !self.area.contains(GridPoint::round(polyline::point_at(line, 0.5)))
+        on_border && !self.inside.contains(GridPoint::round(polyline::point_at(line, 0.5)))
     }
 
     /// Does a line keep so far from other streets that no block becomes narrower than the example's?

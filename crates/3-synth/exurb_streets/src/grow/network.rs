@@ -251,6 +251,17 @@ impl Network {
         best.map(|(_, id, q)| (EdgeId(id), q))
     }
 
+    /// Is the border of the ground nearer to `p` than this?
+    pub fn rim_near(&self, p: Vec2, near_m: f64) -> bool {
+        let mut is_near = false;
+        self.segments.visit(Bounds { min: p - near_m, max: p + near_m }, |e| {
+            is_near |= self.graph.edge(EdgeId(e.id)).data.is_rim()
+                && polyline::nearest_on_segment(e.a, e.b, p).0.distance(p) < near_m;
+            !is_near
+        });
+        is_near
+    }
+
     /// The mean of the directions of streets near `p`, each with its angle multiplied by four: long
     /// where they run in two directions at right angles, short where they run anyhow.
     pub fn grain_near(&self, p: Vec2, radius_m: f64) -> Vec2 {

@@ -126,7 +126,7 @@ pub fn place(
     let mut nodes: BTreeMap<usize, Option<NodeId>> = BTreeMap::new();
     for &core in &patch.core {
         let place = copy.place(layer.nodes[core].at);
-        inside += usize::from(growth.area.contains(GridPoint::round(place)));
+        inside += usize::from(growth.inside.contains(GridPoint::round(place)));
         let there =
             if core == root { Some(node) } else { growth.net.node_near(place, SAME_M, None) };
         if there.is_none() && core != root && !patch.inner.is_empty() {

@@ -100,6 +100,7 @@ fn grow_main(ground: &Ground, plan: &Plan, run: &Run) -> Result<(Network, Claims
     if growth.net.graph.edge_count() > 0 {
         fill::fill(&mut growth, plan.examples[first].main.empty_m, run)?;
     }
+    growth.claims.share();
     Ok((growth.net, growth.claims))
 }
 
@@ -112,7 +113,7 @@ pub fn begin(growth: &mut Growth, start: &Start) {
     let motion = growth.plan.motion_at(start.at, start.example);
     for own in style.starts_near(start.source).into_iter().take(TRIES) {
         let mut at = start.at + motion.apply(style.layer.nodes[own].at - start.source);
-        if !growth.area.contains(GridPoint::round(at)) {
+        if !growth.inside.contains(GridPoint::round(at)) {
             at = start.at;
         }
         let link = Some(style.layer.nodes[own].example);

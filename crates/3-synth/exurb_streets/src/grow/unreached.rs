@@ -45,7 +45,7 @@ fn unreached(growth: &Growth, piece: &Coherent) -> Vec<usize> {
         let counts = node.kind == NodeKind::Junction
             && node.ends.len() > 2
             && growth.claims.owner(place) == Some(piece.id)
-            && growth.area.contains(GridPoint::round(place))
+            && growth.inside.contains(GridPoint::round(place))
             && growth.net.edge_near(place, NEAR_M).is_none();
         if counts {
             found.push(own as usize);
