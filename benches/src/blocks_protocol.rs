@@ -14,13 +14,14 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use exurb_benches::set;
 use exurb_city::{Block, BlockClass, Building, City, ImportOptions, Part, area};
 use exurb_likeness::measures::Family;
 use exurb_likeness::{BUILT, Floor, Panel, Place, Reference, Scorecard};
 use exurb_operation::{AnyOperation, Example, Run, Scope};
 use exurb_recipe::Registry;
 use rayon::prelude::*;
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 
 type Outcome<T> = Result<T, Box<dyn Error + Send + Sync>>;
 
@@ -70,12 +71,7 @@ impl Options {
                 "--seeds" => options.seeds = value()?.parse()?,
                 "--halves" if value()? == "N" => options.halves = [Part::North, Part::South],
                 "--halves" => {}
-                "--set" => {
-                    let pair = value()?;
-                    let (key, text) = pair.split_once('=').ok_or("--set needs KEY=VALUE")?;
-                    let parsed = serde_json::from_str(text).unwrap_or_else(|_| json!(text));
-                    options.params.insert(key.replace('-', "_"), parsed);
-                }
+                "--set" => set(&mut options.params, &value()?)?,
                 flag if flag.starts_with('-') => return Err(format!("no option {flag}").into()),
                 map => options.maps.push(map.into()),
             }

@@ -9,7 +9,9 @@
 mod inputs;
 mod measure;
 mod row;
+mod settings;
 
 pub use inputs::{bench_folder, largest_maps, made_once, root, shared_maps};
 pub use measure::{Measured, measure, osmium, peer, python_says, work_says};
 pub use row::{Better, heading, note, row};
+pub use settings::set;

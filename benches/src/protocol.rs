@@ -20,6 +20,7 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use exurb_benches::set;
 use exurb_city::{City, ImportOptions, Part};
 use exurb_geom::{Bounds, GridPoint, Polygon, Vec2};
 use exurb_likeness::measures::Family;
@@ -84,12 +85,7 @@ impl Options {
                 "--method" => options.method = value()?,
                 "--seeds" => options.seeds = value()?.parse()?,
                 "--least" => options.least = value()?.parse()?,
-                "--set" => {
-                    let pair = value()?;
-                    let (key, text) = pair.split_once('=').ok_or("--set needs KEY=VALUE")?;
-                    let parsed = serde_json::from_str(text).unwrap_or_else(|_| json!(text));
-                    options.params.insert(key.replace('-', "_"), parsed);
-                }
+                "--set" => set(&mut options.params, &value()?)?,
                 flag if flag.starts_with('-') => return Err(format!("no option {flag}").into()),
                 map => options.maps.push(map.into()),
             }

@@ -21,6 +21,8 @@ const GRADE_OVER_M: f64 = 32.0;
 const SHORE_M: f64 = 6.0;
 /// Steps of a street that is bent, in metres.
 const BENT_STEP_M: f64 = 24.0;
+/// How much of its last direction a bent street keeps, against the one it wants.
+const SWING: f64 = 0.7;
 /// A street that would be too steep turns towards the contour in steps of this, in radians.
 const TURN_RAD: f64 = 0.15;
 
@@ -172,8 +174,8 @@ impl Relief {
         for i in 0..count {
             let [from, to] = [i, i + 1].map(|k| polyline::point_at(line, step_m * k as f64));
             let wanted = (to - from).normalize_or(before);
-            // Half of the turn that was needed last stays, so that the street swings.
-            let heading = (wanted + before * 0.7).normalize_or(wanted);
+            // Part of the last direction stays, so that the street swings and does not jag.
+            let heading = (wanted + before * SWING).normalize_or(wanted);
             let at = out[i];
             before = self.bent(at, heading, step_m);
             out.push(at + before * step_m);

@@ -11,34 +11,27 @@
 //! | remove | a street goes that was made to join others |
 //! | straighten | a street with a kink becomes straight |
 
+mod merge;
 mod profile;
+mod remove;
+mod straighten;
 
-use std::collections::{BTreeSet, VecDeque};
+use std::collections::BTreeSet;
 
 use exurb_city::street_graph::StreetGraph;
-use exurb_city::{Origin, Role};
-use exurb_geom::{Bounds, GridPoint, SegmentIndex, Vec2, polyline, trig};
-use exurb_graph::{Dart, EdgeId, NodeId};
-use exurb_operation::rng::place_key;
+use exurb_geom::{Bounds, GridPoint, SegmentIndex, Vec2, polyline};
+use exurb_graph::{EdgeId, NodeId};
 
 use super::ground::Ground;
 use super::network::CLEARANCE_M;
-use super::relief::Verdict;
-use profile::legs;
 pub use profile::{Profile, Weights};
 
-/// Junctions nearer than this may become one, in metres.
-const MERGED_M: f64 = 30.0;
-/// Kinks from this on may go, in radians.
-const KINK_RAD: f64 = 0.3;
 /// Near a shared node clearance is not asked for, in metres.
 const CORNER_M: f64 = 16.0;
 /// Streets meet at this angle at least, in radians.
 const LEAST_ANGLE_RAD: f64 = 0.6;
 /// Places along a street that are looked at, in metres.
 const INSIDE_STEP_M: f64 = 15.0;
-/// Junctions looked at in search of another way around a street that would go.
-const DETOUR: usize = 300;
 
 /// The network that is finished.
 struct Polish<'a> {
@@ -103,264 +96,11 @@ impl Polish<'_> {
         !self.passed.contains(&node) && !self.streets.node(node).data.cut
     }
 
-    /// Streets between two close junctions of three whose side streets lie opposite, the shortest
-    /// first, with their middle.
-    fn pairs(&self, may_change: &impl Fn(&StreetGraph, EdgeId) -> bool) -> Vec<(EdgeId, Vec2)> {
-        let mut found: Vec<(f64, u64, EdgeId, Vec2)> = Vec::new();
-        for (id, edge) in self.streets.edges() {
-            let (u, v) = (edge.from, edge.to);
-            let length = edge.length_m();
-            if length > MERGED_M || u == v || !may_change(self.streets, id) {
-                continue;
-            }
-            let [Some(a), Some(b)] = [id.forward(), id.backward()].map(|d| self.side(d)) else {
-                continue;
-            };
-            let along = (self.streets.node(v).at.to_m() - self.streets.node(u).at.to_m())
-                .normalize_or_zero();
-            let (a, b) = [a, b].map(|d| self.streets.direction(d, 15.0)).into();
-            if a.dot(b) < -0.5 && along.perp_dot(a) * along.perp_dot(b) < 0.0 {
-                let middle = polyline::point_at(&edge.line_m(), length / 2.0);
-                found.push((length, place_key(edge.line()[0]), id, middle));
-            }
-        }
-        found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
-        found.into_iter().map(|(_, _, id, middle)| (id, middle)).collect()
-    }
-
-    /// The street at the tail of `dart` that turns off it, where three meet and the third goes on.
-    fn side(&self, dart: Dart) -> Option<Dart> {
-        let node = self.streets.tail(dart);
-        let own = self.streets.direction(dart, 15.0);
-        let others: Vec<Dart> =
-            self.streets.darts(node).iter().copied().filter(|d| d.edge() != dart.edge()).collect();
-        let [a, b] = others[..] else { return None };
-        let (p, q) = (self.streets.direction(a, 15.0), self.streets.direction(b, 15.0));
-        let (through, side, is) = if p.dot(own) < q.dot(own) { (p, q, b) } else { (q, p, a) };
-        (through.dot(own) < -0.85 && side.dot(own).abs() < 0.6).then_some(is)
-    }
-
-    fn merge(
-        &mut self,
-        id: EdgeId,
-        middle: Vec2,
-        may_change: &impl Fn(&StreetGraph, EdgeId) -> bool,
-    ) {
-        let Some(edge) = self.streets.get_edge(id) else { return };
-        let ends = [edge.from, edge.to];
-        let around: Vec<Dart> = ends
-            .iter()
-            .flat_map(|n| self.streets.darts(*n).iter().copied())
-            .filter(|d| d.edge() != id)
-            .collect();
-        let far: Vec<NodeId> = around.iter().map(|d| self.streets.head(*d)).collect();
-        let distinct: BTreeSet<EdgeId> = around.iter().map(|d| d.edge()).collect();
-        if !ends.iter().all(|n| self.is_free(*n))
-            || distinct.len() != 4
-            || far.iter().any(|n| ends.contains(n))
-            || !distinct.iter().all(|e| may_change(self.streets, *e))
-        {
-            return;
-        }
-        let lines: Vec<Vec<Vec2>> = around
-            .iter()
-            .map(|d| {
-                let mut line = self.streets.dart_line_m(*d);
-                line[0] = middle;
-                line
-            })
-            .collect();
-        let leaving: Vec<Vec2> = lines
-            .iter()
-            .map(|line| (polyline::point_at(line, 15.0) - middle).normalize_or_zero())
-            .collect();
-        let apart = (0..4).all(|i| {
-            (0..i).all(|k| trig::angle_between(leaving[i], leaving[k]) >= LEAST_ANGLE_RAD)
-        });
-        let own: BTreeSet<EdgeId> = distinct.iter().copied().chain([id]).collect();
-        if !apart
-            || lines.iter().zip(&far).any(|(line, n)| {
-                self.ground.relief.verdict(line) != Verdict::Fine
-                    || !self.is_clear(&line[..2], &own, &[*n])
-            })
-        {
-            return;
-        }
-        let before: Vec<(f64, f64)> = around.iter().map(|d| self.size(d.edge())).collect();
-        let streets = &*self.streets;
-        let old_legs = ends.map(|n| legs(streets, n, None));
-        let (length, chord) = self.size(id);
-        let helps = self.helps(|profile| {
-            profile.count_line(length, chord, -1.0);
-            old_legs.iter().for_each(|legs| profile.count_legs(legs, -1.0));
-            profile.count_legs(&leaving, 1.0);
-            for ((length, chord), line) in before.iter().zip(&lines) {
-                profile.count_line(*length, *chord, -1.0);
-                let (new, end) = (polyline::length(line), line[line.len() - 1]);
-                profile.count_line(new, middle.distance(end), 1.0);
-            }
-        });
-        if !helps {
-            return;
-        }
-        for edge in &own {
-            self.index.remove_line(edge.0, &self.streets.edge(*edge).line_m());
-        }
-        let Some(node) = self.streets.collapse_edge(id) else { return };
-        for dart in self.streets.darts(node).to_vec() {
-            let line = self.streets.edge(dart.edge()).line_m();
-            self.index.insert_line(dart.edge().0, &line);
-        }
-    }
-
     /// Length and chord of a street.
     fn size(&self, id: EdgeId) -> (f64, f64) {
         let edge = self.streets.edge(id);
         let chord = self.streets.node(edge.from).at.distance_m(self.streets.node(edge.to).at);
         (edge.length_m(), chord)
-    }
-
-    /// Local streets that were made to join others, between junctions.
-    fn joints(&self, may_change: &impl Fn(&StreetGraph, EdgeId) -> bool) -> Vec<EdgeId> {
-        let mut found: Vec<(u64, EdgeId)> = self
-            .streets
-            .edges()
-            .filter(|(_, e)| {
-                e.data.provenance.origin == Origin::Joined && e.data.role() == Role::Local
-            })
-            .filter(|(id, e)| {
-                let ends = [e.from, e.to];
-                e.from != e.to
-                    && ends.iter().all(|n| self.streets.degree(*n) > 2)
-                    && may_change(self.streets, *id)
-            })
-            .map(|(id, e)| (place_key(e.line()[0]), id))
-            .collect();
-        found.sort_unstable();
-        found.into_iter().map(|(_, id)| id).collect()
-    }
-
-    fn remove(&mut self, id: EdgeId) {
-        let Some(edge) = self.streets.get_edge(id) else { return };
-        let ends = [edge.from, edge.to];
-        if !ends.iter().all(|n| self.is_free(*n) && self.streets.degree(*n) > 2)
-            || !self.has_detour(id)
-        {
-            return;
-        }
-        let streets = &*self.streets;
-        let old = ends.map(|n| legs(streets, n, None));
-        let new = ends.map(|n| {
-            let left = streets.darts(n).iter().filter(|d| d.edge() != id);
-            left.map(|d| streets.direction(*d, 15.0)).collect::<Vec<Vec2>>()
-        });
-        let (length, chord) = self.size(id);
-        // Where two streets are left they become one.
-        let joined: Vec<[(f64, f64); 3]> = ends
-            .iter()
-            .filter(|n| streets.degree(**n) == 3)
-            .map(|n| {
-                let left: Vec<Dart> =
-                    streets.darts(*n).iter().copied().filter(|d| d.edge() != id).collect();
-                let [a, b] = [left[0], left[1]].map(|d| self.size(d.edge()));
-                let far = [left[0], left[1]].map(|d| streets.node(streets.head(d)).at);
-                [a, b, (a.0 + b.0, far[0].distance_m(far[1]))]
-            })
-            .collect();
-        let helps = self.helps(|profile| {
-            profile.count_line(length, chord, -1.0);
-            old.iter().for_each(|legs| profile.count_legs(legs, -1.0));
-            new.iter().for_each(|legs| profile.count_legs(legs, 1.0));
-            for [a, b, one] in &joined {
-                profile.count_line(a.0, a.1, -1.0);
-                profile.count_line(b.0, b.1, -1.0);
-                profile.count_line(one.0, one.1, 1.0);
-            }
-        });
-        if helps {
-            self.index.remove_line(id.0, &self.streets.edge(id).line_m());
-            self.streets.remove_edge(id);
-            // Where two streets are left they count as one already.
-            let passed = ends.into_iter().filter(|n| self.streets.degree(*n) == 2);
-            self.passed.extend(passed);
-        }
-    }
-
-    /// Is there another way between the ends of a street, and not far?
-    fn has_detour(&self, id: EdgeId) -> bool {
-        let edge = self.streets.edge(id);
-        let mut seen = BTreeSet::from([edge.from]);
-        let mut open = VecDeque::from([edge.from]);
-        while let Some(node) = open.pop_front() {
-            if node == edge.to {
-                return true;
-            }
-            if seen.len() > DETOUR {
-                return false;
-            }
-            let darts = self.streets.darts(node).iter().filter(|d| d.edge() != id);
-            // What hangs together beyond the target only falls apart in it.
-            let inside = darts.filter(|d| self.inside.get(d.edge().index()) == Some(&true));
-            let heads = inside.map(|d| self.streets.head(*d));
-            open.extend(heads.filter(|n| seen.insert(*n)));
-        }
-        false
-    }
-
-    /// Streets with a kink, the sharpest first.
-    fn kinked(&self, may_change: &impl Fn(&StreetGraph, EdgeId) -> bool) -> Vec<EdgeId> {
-        let mut found: Vec<(f64, u64, EdgeId)> = self
-            .streets
-            .edges()
-            .filter(|(id, e)| {
-                e.line().len() > 2 && !e.data.roundabout && may_change(self.streets, *id)
-            })
-            .map(|(id, e)| (kink_rad(&e.line_m()), place_key(e.line()[0]), id))
-            .filter(|(kink, ..)| *kink >= KINK_RAD)
-            .collect();
-        found.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
-        found.into_iter().map(|(_, _, id)| id).collect()
-    }
-
-    fn straighten(&mut self, id: EdgeId) {
-        let Some(edge) = self.streets.get_edge(id) else { return };
-        let ends = [edge.from, edge.to];
-        let [a, b] = ends.map(|n| self.streets.node(n).at.to_m());
-        let length = edge.length_m();
-        let chord = a.distance(b);
-        if !ends.iter().all(|n| self.is_free(*n)) || chord < 20.0 || length > 1.4 * chord {
-            return;
-        }
-        let ahead = (b - a) / chord;
-        let own = BTreeSet::from([id]);
-        let turned = [(ends[0], ahead), (ends[1], -ahead)];
-        let fits = turned.iter().all(|(n, d)| {
-            let others = self.streets.darts(*n).iter().filter(|dart| dart.edge() != id);
-            let mut angles =
-                others.map(|dart| trig::angle_between(self.streets.direction(*dart, 15.0), *d));
-            angles.all(|angle| angle >= LEAST_ANGLE_RAD)
-        });
-        if !fits
-            || self.ground.relief.verdict(&[a, b]) != Verdict::Fine
-            || !self.is_clear(&[a, b], &own, &ends)
-        {
-            return;
-        }
-        let streets = &*self.streets;
-        let old = ends.map(|n| legs(streets, n, None));
-        let new = turned.map(|(n, d)| legs(streets, n, Some((id, d))));
-        let helps = self.helps(|profile| {
-            profile.count_line(length, chord, -1.0);
-            profile.count_line(chord, chord, 1.0);
-            old.iter().for_each(|legs| profile.count_legs(legs, -1.0));
-            new.iter().for_each(|legs| profile.count_legs(legs, 1.0));
-        });
-        if helps {
-            self.index.remove_line(id.0, &self.streets.edge(id).line_m());
-            let line = ends.map(|n| self.streets.node(n).at).to_vec();
-            self.streets.set_line(id, line);
-            self.index.insert_line(id.0, &[a, b]);
-        }
     }
 
     /// Does a straight piece keep clear of all streets but `own`, corners at `ends` apart?
@@ -426,22 +166,11 @@ impl Polish<'_> {
     }
 }
 
-/// The sharpest turn of a line, in radians.
-fn kink_rad(line: &[Vec2]) -> f64 {
-    let turns = line.windows(3).map(|w| {
-        let (before, after) = (w[1] - w[0], w[2] - w[1]);
-        if before.length().min(after.length()) < 3.0 {
-            return 0.0;
-        }
-        trig::angle_between(before, after)
-    });
-    turns.fold(0.0, f64::max)
-}
-
 #[cfg(test)]
 mod tests {
     use exurb_city::{Street, street_graph};
 
+    use super::straighten::kink_rad;
     use super::*;
 
     const WEIGHTS: Weights = Weights { lengths: 1.0, bends: 1.0, junctions: 1.0, density: 1.0 };
