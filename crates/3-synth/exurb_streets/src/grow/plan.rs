@@ -153,13 +153,12 @@ impl Plan<'_> {
     /// The example to copy at `p`.
     pub fn example_at(&self, p: Vec2) -> usize {
         let first = self.starts.first().map_or(0, |s| s.example);
-        let own = self.domains.weights_at(p);
-        let weights = match self.interpolation {
-            _ if own.is_some() => own.unwrap_or_default().to_vec(),
-            Some(share) => vec![share, 1.0 - share],
-            None if self.starts.is_empty() => self.examples.iter().map(|e| e.weight).collect(),
-            None if self.starts.iter().all(|s| s.example == first) => return first,
-            None => self.weights(p),
+        let weights = match (self.domains.weights_at(p), self.interpolation) {
+            (Some(own), _) => own.to_vec(),
+            (None, Some(share)) => vec![share, 1.0 - share],
+            _ if self.starts.is_empty() => self.examples.iter().map(|e| e.weight).collect(),
+            _ if self.starts.iter().all(|s| s.example == first) => return first,
+            _ => self.weights(p),
         };
         let mut left = self.noise(p) * weights.iter().sum::<f64>();
         for (example, weight) in weights.iter().enumerate() {
