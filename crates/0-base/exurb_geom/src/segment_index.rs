@@ -6,7 +6,7 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::{Bounds, Vec2};
+use crate::{Bounds, Vec2, polyline};
 
 /// An index of line segments, each with a number of the caller's.
 #[derive(Clone, Debug)]
@@ -89,6 +89,32 @@ impl SegmentIndex {
                 }
             }
         }
+    }
+
+    /// The distance from `p` to the nearest segment; `None` where that is more than `within_m`. Rings of
+    /// cells around `p` until none can hold a nearer one. O(cells within the distance + segments there).
+    pub fn nearest_m(&self, p: Vec2, within_m: f64) -> Option<f64> {
+        let (x, y) = self.cell(p);
+        let mut best = within_m;
+        let mut found = false;
+        for ring in 0_i32.. {
+            // Whatever lies in this ring and beyond is at least this far.
+            if f64::from(ring - 1) * self.cell_m > best {
+                break;
+            }
+            for dy in -ring..=ring {
+                let step = if dy.abs() == ring { 1 } else { (2 * ring).max(1) };
+                for dx in (-ring..=ring).step_by(step as usize) {
+                    for e in self.cells.get(&(x + dx, y + dy)).into_iter().flatten() {
+                        let distance = polyline::nearest_on_segment(e.a, e.b, p).0.distance(p);
+                        if distance <= best {
+                            (best, found) = (distance, true);
+                        }
+                    }
+                }
+            }
+        }
+        found.then_some(best)
     }
 
     /// The numbers of the segments whose boxes meet `bounds`, ascending, each once.

@@ -139,8 +139,63 @@ pub struct Domain {
     pub usage: String,
     /// Names of examples with their weights; none leaves the choice open.
     pub examples: std::collections::BTreeMap<String, f64>,
+    /// Kilometres of streets for each square kilometre that an example should have to serve here.
+    #[serde(default)]
+    pub density: Option<f64>,
+    /// Places where growth begins, as `LON,LAT` or `LON,LAT=LON,LAT` with the place in the example.
+    #[serde(default)]
+    pub starts: Vec<String>,
     /// Rings in metres in the city's frame, the outer one first.
     polygon: Vec<Vec<[f64; 2]>>,
+}
+
+/// Lines that a parameter takes from a file, noded where they cross.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(untagged)]
+pub enum LinesFile {
+    /// The file's name.
+    File(String),
+    /// What was read.
+    Read(Lines),
+}
+
+/// Lines of a [`LinesFile`].
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Lines {
+    /// Longitude and latitude of the place that coordinates count from.
+    pub origin: [f64; 2],
+    /// Points of each line in metres east and north of the origin.
+    pub lines: Vec<Vec<[f64; 2]>>,
+}
+
+impl Default for LinesFile {
+    fn default() -> Self {
+        Self::File(String::new())
+    }
+}
+
+impl schemars::JsonSchema for LinesFile {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "LinesFile".into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!({ "type": "string", "x-file": "lines" })
+    }
+}
+
+impl LinesFile {
+    /// The lines; `None` where none were read.
+    pub fn lines(&self) -> Option<&Lines> {
+        match self {
+            Self::Read(lines) => Some(lines),
+            Self::File(_) => None,
+        }
+    }
 }
 
 impl Domain {

@@ -22,7 +22,7 @@ pub mod params;
 pub mod rng;
 mod run;
 
-pub use attachment::{Domain, DomainsFile, PolygonFile, StyleArea, StyleMap};
+pub use attachment::{Domain, DomainsFile, Lines, LinesFile, PolygonFile, StyleArea, StyleMap};
 pub use card::Card;
 pub use failure::Failure;
 pub use operation::{AnyOperation, Example, Operation, Outcome, Scope, Seconds, erase};

@@ -23,6 +23,18 @@ pub trait Operation {
         run: &Run,
     ) -> Result<Self::Learned, Failure>;
 
+    /// Which examples of a library serve for `city`, by their places in it, without repetition: all of
+    /// them unless the method knows how to choose.
+    fn choose(
+        _city: &City,
+        _scope: &Scope,
+        library: &[Example],
+        _params: &Self::Params,
+        _run: &Run,
+    ) -> Result<Vec<usize>, Failure> {
+        Ok((0..library.len()).collect())
+    }
+
     /// What was learned, in figures for people; null where there is nothing to tell.
     fn describe(_learned: &Self::Learned) -> Value {
         Value::Null
@@ -92,6 +104,15 @@ pub trait AnyOperation: Send + Sync {
     fn schema(&self) -> Value;
     /// Checks a parameter document without running.
     fn check(&self, params: &Value) -> Result<(), Failure>;
+    /// Which examples of a library serve, by their places in it.
+    fn choose(
+        &self,
+        city: &City,
+        scope: &Scope,
+        library: &[Example],
+        params: Value,
+        run: &Run,
+    ) -> Result<Vec<usize>, Failure>;
     /// Learns with default parameters and describes what was learned.
     fn lesson(&self, examples: &[Example], run: &Run) -> Result<Value, Failure>;
     /// Learns, edits and applies the edit.
@@ -130,6 +151,18 @@ impl<O: Operation> AnyOperation for Erased<O> {
 
     fn check(&self, params: &Value) -> Result<(), Failure> {
         Self::parse(params.clone()).map(|_| ())
+    }
+
+    fn choose(
+        &self,
+        city: &City,
+        scope: &Scope,
+        library: &[Example],
+        params: Value,
+        run: &Run,
+    ) -> Result<Vec<usize>, Failure> {
+        let run = run.named(&O::CARD.name());
+        O::choose(city, scope, library, &Self::parse(params)?, &run)
     }
 
     fn lesson(&self, examples: &[Example], run: &Run) -> Result<Value, Failure> {

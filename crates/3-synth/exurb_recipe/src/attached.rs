@@ -2,11 +2,12 @@
 //!
 //! A property whose schema says `x-file` takes a file's name. `polygon` stands for the outline in it, in
 //! the city's frame; `domains` for areas with their uses and examples; `style-map` for areas with the
-//! names of examples, or for an image.
+//! names of examples, or for an image; `lines` for the streets in it.
 
 use std::path::{Path, PathBuf};
 
-use exurb_geom::{Frame, GridPoint, LonLat, Polygon};
+use exurb_city::ImportOptions;
+use exurb_geom::{Frame, GridPoint, LonLat, Polygon, Vec2};
 use exurb_operation::Run;
 use serde_json::{Map, Value, json};
 
@@ -43,6 +44,7 @@ pub fn read(
                 let polygon = target::read_in_frame(file, frame, folder, run)?;
                 json!({ "polygon": rings(&polygon) })
             }
+            "lines" => lines(&open::locate(file, folder)?)?,
             "domains" => domains(&open::locate(file, folder)?, frame)?,
             _ if is_png(file) => image(&open::locate(file, folder)?)?,
             _ => areas(&open::locate(file, folder)?, frame)?,
@@ -86,8 +88,18 @@ fn areas(path: &Path, frame: &Frame) -> Result<Value, Error> {
     Ok(json!({ "areas": out }))
 }
 
-/// The polygons of a GeoJSON file with what they say of growth: `use`, and `example` or `examples`
-/// with weights.
+/// The streets of a map, around its middle.
+fn lines(path: &Path) -> Result<Value, Error> {
+    let city = open::open_city(path, &ImportOptions::default())?.city;
+    let point = |p: &Vec2| [p.x, p.y];
+    let lines: Vec<Vec<[f64; 2]>> =
+        city.streets.edges().map(|(_, e)| e.line_m().iter().map(point).collect()).collect();
+    let origin = city.frame.unproject(Vec2::ZERO);
+    Ok(json!({ "origin": [origin.lon, origin.lat], "lines": lines }))
+}
+
+/// The polygons of a GeoJSON file with what they say of growth: `use`, `example` or `examples` with
+/// weights, `density`, and `start` or `starts`.
 fn domains(path: &Path, frame: &Frame) -> Result<Value, Error> {
     let wrong = |message: &str| Error::Input(open::named(path, message));
     let mut out = Vec::new();
@@ -102,7 +114,20 @@ fn domains(path: &Path, frame: &Frame) -> Result<Value, Error> {
             (None, None) => json!({}),
             _ => return Err(wrong("`examples` is neither a list of names nor names with weights")),
         };
-        out.push(json!({ "use": kind, "examples": examples, "polygon": rings(&polygon) }));
+        let density = properties.get("density").filter(|d| !d.is_null());
+        if density.is_some_and(|d| d.as_f64().is_none_or(|d| d <= 0.0)) {
+            return Err(wrong("`density` is no number of km/km² above 0"));
+        }
+        let starts = match (properties.get("start"), properties.get("starts")) {
+            (Some(Value::String(start)), _) => json!([start]),
+            (_, Some(Value::Array(list))) if list.iter().all(Value::is_string) => json!(list),
+            (None | Some(Value::Null), None | Some(Value::Null)) => json!([]),
+            _ => return Err(wrong("`starts` is no list of LON,LAT or LON,LAT=LON,LAT")),
+        };
+        out.push(json!({
+            "use": kind, "examples": examples, "density": density, "starts": starts,
+            "polygon": rings(&polygon),
+        }));
     }
     Ok(json!({ "areas": out }))
 }

@@ -47,6 +47,10 @@ impl Recipe {
         let (true, Ok(mut whole)) = (taken_whole && !history.is_empty(), earlier) else {
             return self;
         };
+        // On other ground the earlier steps would not make this city.
+        if self.terrain.is_some() && self.terrain != whole.terrain {
+            return self;
+        }
         let was = whole.examples.len();
         // The weight of an only example says nothing.
         let alone = self.examples.len() == 1;
@@ -56,7 +60,6 @@ impl Recipe {
             let before: Vec<String> = whole.examples[..was].iter().map(Source::key).collect();
             limit(&mut whole.steps, &before);
         }
-        whole.terrain = self.terrain.or(whole.terrain);
         let mut steps = self.steps;
         limit(&mut steps, &names);
         for mut step in steps {
@@ -77,7 +80,7 @@ impl Recipe {
         run: &Run,
     ) -> Result<Result<(), String>, Error> {
         let history = &inputs.city.metadata.recipe;
-        if !self.examples.is_empty() || history.is_empty() {
+        if !self.examples.is_empty() || self.library.is_some() || history.is_empty() {
             return Ok(Ok(()));
         }
         let Ok(earlier) = toml::from_str::<Self>(history) else { return Ok(Ok(())) };

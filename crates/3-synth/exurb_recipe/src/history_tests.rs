@@ -24,7 +24,7 @@ fn make(recipe: &Recipe, city: Option<City>) -> City {
         let target = recipe.target.clone().unwrap_or(Target::Size(Size::default()));
         crate::target::begin(&target, first, Path::new(""), &Run::new(1)).unwrap()
     });
-    let inputs = Inputs { city, examples, read_seconds: 0.0 };
+    let inputs = Inputs { city, changed: vec![], examples, read_seconds: 0.0 };
     let run = Run::new(recipe.seed);
     let Made { city, .. } = recipe.make(inputs, Path::new(""), &registry(), &run).unwrap();
     city
@@ -131,7 +131,12 @@ fn a_rectangle_lies_around_the_first_examples_centre() {
 fn a_cancelled_run_gives_no_city() {
     let run = Run::new(1);
     run.cancel();
-    let inputs = Inputs { city: (*example("a").city).clone(), examples: vec![], read_seconds: 0.0 };
+    let inputs = Inputs {
+        city: (*example("a").city).clone(),
+        changed: vec![],
+        examples: vec![],
+        read_seconds: 0.0,
+    };
     let result = draw().make(inputs, Path::new(""), &registry(), &run);
     assert!(result.is_err_and(|e| e.is_cancelled()));
 }

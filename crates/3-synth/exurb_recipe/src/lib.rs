@@ -10,6 +10,7 @@
 //! | [`Recipe`], [`Step`], [`Source`], [`Target`], [`Export`] | the document |
 //! | `document` | TOML both ways, with errors that name the line |
 //! | `run` | reading the inputs, running the steps |
+//! | [`Library`] | examples chosen from a folder of many |
 //! | `history` | the recipe inside a city file: portable, continued |
 //! | [`open_city`], `format` | any readable file to a city |
 //! | [`builtin`] | the examples that come with the program |
@@ -33,6 +34,7 @@ mod error;
 mod fixed;
 mod format;
 mod history;
+mod library;
 mod open;
 mod recipe;
 mod registry;
@@ -46,6 +48,7 @@ mod test_operation;
 
 pub use error::Error;
 pub use format::READABLE;
+pub use library::Library;
 pub use open::{open_all, open_city};
 pub use recipe::{Export, Half, Recipe, Source, Step, Target, VERSION, Within};
 pub use registry::{Registry, needs_city};

@@ -5,7 +5,7 @@ use exurb_geom::LonLat;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use crate::{Size, TerrainSource};
+use crate::{Library, Size, TerrainSource};
 
 /// The version of the recipe format that this program reads and writes.
 pub const VERSION: u32 = 1;
@@ -37,6 +37,9 @@ pub struct Recipe {
     /// the step.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub examples: Vec<Source>,
+    /// A folder of further examples, from which the first step chooses.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub library: Option<Library>,
     /// The operations, in order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub steps: Vec<Step>,
@@ -128,6 +131,8 @@ pub enum Within {
     All,
     /// Inside the polygon of a GeoJSON or GeoPackage file.
     File(PathBuf),
+    /// Where the recipe's terrain differs from the ground of its city.
+    Changed,
     /// In the blocks of these numbers.
     Blocks(Vec<u32>),
 }
@@ -177,6 +182,7 @@ impl Default for Recipe {
             target: None,
             terrain: None,
             examples: Vec::new(),
+            library: None,
             steps: Vec::new(),
             exports: Vec::new(),
         }
@@ -204,6 +210,21 @@ impl Source {
         let file = self.file.file_name().unwrap_or(self.file.as_os_str()).to_string_lossy();
         let file = file.strip_prefix("builtin:").unwrap_or(&file);
         file.split('.').find(|part| !part.is_empty()).unwrap_or("city").to_owned()
+    }
+
+    /// The same, each under a name of its own.
+    pub fn distinct(sources: impl IntoIterator<Item = Self>) -> Vec<Self> {
+        let mut distinct: Vec<Self> = Vec::new();
+        for mut source in sources {
+            let plain = source.name();
+            let mut number = 2;
+            while distinct.iter().any(|s| s.name() == source.name()) {
+                source.name = Some(format!("{plain}-{number}"));
+                number += 1;
+            }
+            distinct.push(source);
+        }
+        distinct
     }
 
     /// What of the file to take, for the readers.

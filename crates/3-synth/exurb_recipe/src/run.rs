@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use exurb_city::{City, Imported, completeness};
+use exurb_geom::Polygon;
 use exurb_operation::{Example, Run, Scope};
 use serde_json::Value;
 
@@ -19,6 +20,8 @@ use crate::{
 pub struct Inputs {
     /// The city the first step begins with.
     pub city: City,
+    /// Where the terrain changed the city's ground.
+    pub changed: Vec<Polygon>,
     /// The examples, in the recipe's order.
     pub examples: Vec<Example>,
     /// How long reading took, in seconds.
@@ -66,11 +69,14 @@ impl Recipe {
             examples.push(read_example(source, folder, run)?);
         }
         let mut city = self.first_city(&examples, folder, registry, run)?;
+        let before = city.clone();
         if let Some(source) = &self.terrain {
             terrain::lay(&mut city, source, folder, run)?;
         }
+        let asks = self.steps.iter().any(|step| step.scope == Within::Changed);
+        let changed = if asks { changed_ground(&before, &city, run)? } else { Vec::new() };
         run.check()?;
-        Ok(Inputs { city, examples, read_seconds: started.elapsed().as_secs_f64() })
+        Ok(Inputs { city, changed, examples, read_seconds: started.elapsed().as_secs_f64() })
     }
 
     fn first_city(
@@ -107,31 +113,39 @@ impl Recipe {
         registry: &Registry,
         run: &Run,
     ) -> Result<Made, Error> {
-        let Inputs { mut city, examples, read_seconds } = inputs;
+        let Inputs { mut city, changed, examples, read_seconds } = inputs;
+        let started = Instant::now();
+        let (recipe, examples) = self.with_library(examples, &city, folder, registry, run)?;
+        let read = read_seconds + started.elapsed().as_secs_f64();
         let history = city.metadata.recipe.clone();
-        let mut seconds = Seconds { read: read_seconds, ..Seconds::default() };
-        for step in &self.steps {
+        let mut seconds = Seconds { read, ..Seconds::default() };
+        for step in &recipe.steps {
             let operation = registry.find(&step.op).map_err(Error::Recipe)?;
-            let scope = scope(&step.scope, &city, folder, run)?;
-            let chosen = self.choose(step, &city, &examples);
-            if let Some(file) = &step.fixed {
-                fixed::lay(&mut city, file, &scope, folder, run)?;
-            }
+            let scopes = match &step.scope {
+                Within::Changed => changed.iter().cloned().map(Scope::Inside).collect(),
+                within => vec![scope(within, &city, folder, run)?],
+            };
+            let chosen = recipe.choose(step, &city, &examples);
             run.phase(&step.op);
-            let run = run.seeded(step.seed.unwrap_or(self.seed));
+            let run = run.seeded(step.seed.unwrap_or(recipe.seed));
             let read =
                 attached::read(&step.params, &operation.schema(), &city.frame, folder, &run)?;
-            let params = Value::Object(read);
-            let outcome = operation.run(&city, &scope, &chosen, params, &run)?;
-            seconds.learn += outcome.seconds.learn;
-            seconds.synthesise += outcome.seconds.synthesise;
-            city = outcome.city;
+            for scope in &scopes {
+                if let Some(file) = &step.fixed {
+                    fixed::lay(&mut city, file, scope, folder, &run)?;
+                }
+                let params = Value::Object(read.clone());
+                let outcome = operation.run(&city, scope, &chosen, params, &run)?;
+                seconds.learn += outcome.seconds.learn;
+                seconds.synthesise += outcome.seconds.synthesise;
+                city = outcome.city;
+            }
         }
         run.check()?;
         // A made city is an example, too: have its streets their houses by now?
         city.metadata.buildings_complete =
             completeness::is_complete(&city.streets, &city.buildings);
-        city.metadata.recipe = self.portable(registry).after(&history, registry).print()?;
+        city.metadata.recipe = recipe.portable(registry).after(&history, registry).print()?;
         Ok(Made { city, seconds, tallies: run.tallies() })
     }
 
@@ -150,10 +164,29 @@ impl Recipe {
     }
 }
 
-fn scope(within: &Within, city: &City, folder: &Path, run: &Run) -> Result<Scope, Error> {
+/// Where new ground differs from the old.
+fn changed_ground(old: &City, new: &City, run: &Run) -> Result<Vec<Polygon>, Error> {
+    let parts = exurb_city::terrain::changed(old, new).map_err(|e| Error::Input(e.to_string()))?;
+    let ha: f64 = parts.iter().map(|part| part.area_m2() / 1e4).sum();
+    run.warn(match parts.len() {
+        0 => "the ground is as it was, so nothing grows anew".to_owned(),
+        count => format!("{count} part(s) of {ha:.1} ha have other ground and grow anew"),
+    });
+    Ok(parts)
+}
+
+/// Where a step may change the city.
+pub(crate) fn scope(
+    within: &Within,
+    city: &City,
+    folder: &Path,
+    run: &Run,
+) -> Result<Scope, Error> {
     Ok(match within {
         Within::All => Scope::All,
         Within::Blocks(blocks) => Scope::Blocks(blocks.clone()),
+        // Nothing has changed before the first step.
+        Within::Changed => Scope::All,
         Within::File(file) => Scope::Inside(target::read_in_frame(file, &city.frame, folder, run)?),
     })
 }

@@ -14,6 +14,8 @@ use serde_json::Value;
 use crate::attached::{self, Image};
 use crate::{Error, open};
 
+/// Class of the parks of a sketch.
+const PARK: &str = "park";
 /// Colours of a painted sketch.
 const COLORS: [(u32, SketchedUse); 5] = [
     (0x3070C0, SketchedUse::Water),
@@ -39,8 +41,10 @@ pub fn lay(city: &mut City, path: &Path, around_m: f64, seed: u64) -> Result<(),
     let parks = sketched_areas(bounds, use_at, SketchedUse::Park);
     let parks = parks.map_err(|e| wrong(&e.to_string()))?;
     let mut land_use = (*city.land_use).clone();
+    // The sketch says where parks are.
+    land_use.retain(|area| *area.class != *PARK);
     for polygon in parks {
-        land_use.push(Area { id: 0, polygon, class: "park".into() });
+        land_use.push(Area { id: 0, polygon, class: PARK.into() });
     }
     land_use.iter_mut().zip(1..).for_each(|(area, id)| area.id = id);
     city.land_use = land_use.into();

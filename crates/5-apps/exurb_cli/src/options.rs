@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use exurb_recipe::{Gaps, Half, Size, Source, Target, TargetWord, TerrainBounds, TerrainSource};
+use exurb_recipe::{
+    Gaps, Half, Library, Size, Source, Target, TargetWord, TerrainBounds, TerrainSource,
+};
 
 use crate::format::Format;
 
@@ -86,6 +88,23 @@ pub struct ExampleOptions {
     pub part: PartOptions,
 }
 
+/// What to choose examples from.
+#[derive(Args, Clone, Debug, Default)]
+#[command(next_help_heading = "Reading")]
+pub struct LibraryOptions {
+    /// Folder of maps and cities, height maps of the same names beside them, of which those serve that
+    /// fit: by ground, by the density of areas, or by a drawn fragment
+    #[arg(long, value_name = "DIR")]
+    pub example_library: Option<PathBuf>,
+}
+
+impl LibraryOptions {
+    /// The folder as a recipe has it.
+    pub fn library(self) -> Option<Library> {
+        self.example_library.map(|folder| Library { folder })
+    }
+}
+
 /// Where and how large a new city is.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Target")]
@@ -153,18 +172,7 @@ impl PartOptions {
 impl ExampleOptions {
     /// The examples as a recipe has them, each under a name of its own.
     pub fn sources(&self) -> Vec<Source> {
-        let mut sources: Vec<Source> = Vec::new();
-        for example in &self.examples {
-            let mut source = self.part.apply(example.clone());
-            let plain = source.name();
-            let mut number = 2;
-            while sources.iter().any(|s| s.name() == source.name()) {
-                source.name = Some(format!("{plain}-{number}"));
-                number += 1;
-            }
-            sources.push(source);
-        }
-        sources
+        Source::distinct(self.examples.iter().map(|example| self.part.apply(example.clone())))
     }
 }
 
@@ -276,7 +284,7 @@ mod tests {
         assert_eq!(example("a=b.osm").unwrap().file.to_str(), Some("a=b.osm"));
         assert!(example("a.osm=-1").is_err() && example("a.osm=0").is_err());
         let examples = vec![Source::new("a/map.osm"), Source::new("b/map.osm")];
-        let options = ExampleOptions { examples, part: PartOptions::default() };
+        let options = ExampleOptions { examples, ..ExampleOptions::default() };
         let names: Vec<String> = options.sources().iter().map(Source::name).collect();
         assert_eq!(names, ["map", "map-2"]);
     }

@@ -22,10 +22,30 @@ const LEAST_UNTAGGED_M: f64 = 250.0;
 pub struct Carriageways<'a> {
     pub graph: &'a StreetGraph,
     options: &'a Simplify,
-    grid: SegmentGrid,
-    owners: Vec<EdgeId>,
+    /// All streets, and those that can be one half of a pair.
+    all: Linework,
+    halves: Linework,
     candidate: Vec<bool>,
     buildings: BoxGrid,
+}
+
+/// Segments of streets to look up.
+struct Linework {
+    grid: SegmentGrid,
+    owners: Vec<EdgeId>,
+}
+
+impl Linework {
+    fn of(graph: &StreetGraph, counts: impl Fn(EdgeId) -> bool) -> Self {
+        let (mut owners, mut segments) = (Vec::new(), Vec::new());
+        for (id, edge) in graph.edges().filter(|(id, _)| counts(*id)) {
+            for w in edge.line().windows(2) {
+                owners.push(id);
+                segments.push((w[0], w[1]));
+            }
+        }
+        Self { grid: SegmentGrid::new(segments), owners }
+    }
 }
 
 /// Where the partner of a carriageway runs beside a point of it.
@@ -38,17 +58,14 @@ pub struct Beside {
 
 impl<'a> Carriageways<'a> {
     pub fn of(graph: &'a StreetGraph, options: &'a Simplify) -> Self {
-        let (mut owners, mut segments) = (Vec::new(), Vec::new());
         let mut candidate = vec![false; graph.edge_bound()];
         for (id, edge) in graph.edges() {
             candidate[id.index()] = may_be_half(&edge.data, options);
-            for w in edge.line().windows(2) {
-                owners.push(id);
-                segments.push((w[0], w[1]));
-            }
         }
+        let all = Linework::of(graph, |_| true);
+        let halves = Linework::of(graph, |id| candidate[id.index()]);
         let buildings = BoxGrid::of(options.buildings.iter().map(|b| &b.polygon));
-        Self { graph, options, grid: SegmentGrid::new(segments), owners, candidate, buildings }
+        Self { graph, options, all, halves, candidate, buildings }
     }
 
     pub fn is_candidate(&self, edge: EdgeId) -> bool {
@@ -66,15 +83,31 @@ impl<'a> Carriageways<'a> {
     ) -> Option<Beside> {
         let mut near = Vec::new();
         let p = GridPoint::round(at);
-        self.grid.near(p, p, (self.options.gap_m * 1000.0) as i32, &mut near);
+        self.halves.grid.near(p, p, self.gap_mm(), &mut near);
+        self.partner_among(&near, edge, at, direction, counts)
+    }
+
+    fn gap_mm(&self) -> i32 {
+        (self.options.gap_m * 1000.0) as i32
+    }
+
+    /// [`Self::partner`] among some segments, which hold all within the gap around `at`.
+    fn partner_among(
+        &self,
+        near: &[u32],
+        edge: EdgeId,
+        at: Vec2,
+        direction: Vec2,
+        counts: impl Fn(EdgeId) -> bool,
+    ) -> Option<Beside> {
         let own = &self.graph.edge(edge).data;
         let mut best: Option<Beside> = None;
-        for piece in &near {
-            let other = self.owners[*piece as usize];
-            if other == edge || !self.is_candidate(other) || !counts(other) {
+        for piece in near {
+            let other = self.halves.owners[*piece as usize];
+            if other == edge || !counts(other) {
                 continue;
             }
-            let (a, b) = self.grid.segment(*piece);
+            let (a, b) = self.halves.grid.segment(*piece);
             let (q, _) = polyline::nearest_on_segment(a.to_m(), b.to_m(), at);
             let distance_m = q.distance(at);
             let turn = (b.to_m() - a.to_m()).normalize().dot(direction);
@@ -94,7 +127,7 @@ impl<'a> Carriageways<'a> {
                 best = Some(Beside { edge: other, at: q, distance_m });
             }
         }
-        best.filter(|found| self.is_clear(edge, found, p))
+        best.filter(|found| self.is_clear(edge, found, GridPoint::round(at)))
     }
 
     /// How far the partner of a street may run. Local streets that are no oneways are not taken for
@@ -111,10 +144,10 @@ impl<'a> Carriageways<'a> {
     fn is_clear(&self, edge: EdgeId, found: &Beside, p: GridPoint) -> bool {
         let q = GridPoint::round(found.at);
         let mut near = Vec::new();
-        self.grid.near(p, q, 0, &mut near);
+        self.all.grid.near(p, q, 0, &mut near);
         let street = near.iter().any(|piece| {
-            let other = self.owners[*piece as usize];
-            let (a, b) = self.grid.segment(*piece);
+            let other = self.all.owners[*piece as usize];
+            let (a, b) = self.all.grid.segment(*piece);
             other != edge && other != found.edge && grid::cross_properly(p, q, a, b)
         });
         if street {
@@ -144,6 +177,14 @@ impl<'a> Carriageways<'a> {
 
     /// Samples along an edge: metres along it, and does a partner run beside?
     fn samples(&self, edge: EdgeId) -> Vec<(f64, bool)> {
+        // What lies along the edge is looked up once for all its samples.
+        let (mut near, mut beside) = (Vec::new(), Vec::new());
+        for w in self.graph.edge(edge).line().windows(2) {
+            self.halves.grid.near(w[0], w[1], self.gap_mm() + 1, &mut near);
+            beside.append(&mut near);
+        }
+        beside.sort_unstable();
+        beside.dedup();
         let line = self.graph.edge(edge).line_m();
         let length = polyline::length(&line);
         let count = (length / SAMPLE_M).ceil().max(3.0);
@@ -153,7 +194,9 @@ impl<'a> Carriageways<'a> {
                 let point = |m| polyline::point_at(&line, m);
                 let step = point(along + 1.0) - point(along - 1.0);
                 let found = step.length() > 0.0
-                    && self.partner(edge, point(along), step.normalize(), |_| true).is_some();
+                    && self
+                        .partner_among(&beside, edge, point(along), step.normalize(), |_| true)
+                        .is_some();
                 (along, found)
             })
             .collect()

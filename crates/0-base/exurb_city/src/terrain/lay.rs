@@ -30,7 +30,7 @@ impl City {
     }
 
     /// Adds to the city's water whatever of the target lies under its terrain's water level and is
-    /// no water yet. Puddles under 400 m² are left out. Nothing without such a level.
+    /// no water yet, in place of what an earlier terrain flooded. Puddles under 400 m² are left out. Nothing without such a level.
     pub fn flood(&mut self) {
         let Some(terrain) = &self.terrain else { return };
         let below = |level: f64| {
@@ -40,10 +40,11 @@ impl City {
         };
         let areas = terrain.water_level_m().map(below).unwrap_or_default();
         let mut water = (*self.water).clone();
-        let known: Vec<&Polygon> = self.water.iter().map(|a| &a.polygon).collect();
+        water.retain(|area| *area.class != *FLOODED);
+        let known: Vec<Polygon> = water.iter().map(|a| a.polygon.clone()).collect();
         for area in &areas {
             for piece in overlay::intersection(area, &self.target) {
-                let new = overlay::difference(&piece, known.iter().copied());
+                let new = overlay::difference(&piece, &known);
                 let new = new.into_iter().filter(|p| p.area_m2() >= LEAST_WATER_M2);
                 water.extend(new.map(|polygon| Area { id: 0, polygon, class: FLOODED.into() }));
             }

@@ -16,6 +16,7 @@
 //! | `sketched` | plausible ground for a sketch of land uses |
 
 mod area;
+mod changed;
 mod derive;
 mod lay;
 mod sample;
@@ -27,6 +28,7 @@ use exurb_geom::grid::LIMIT_MM;
 use exurb_geom::{Bounds, GridPoint, Vec2};
 
 pub use area::Relief;
+pub use changed::changed;
 pub use lay::elevate;
 pub use sketched::{SKETCH_CELL_M, SketchedUse, sketched, sketched_areas};
 

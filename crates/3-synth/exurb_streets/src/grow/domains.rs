@@ -9,17 +9,14 @@ use exurb_city::{City, Land};
 use exurb_geom::{Bounds, GridPoint, Polygon, Vec2};
 use exurb_operation::{Domain, Run};
 
+use super::character::{self, Character, Place};
 use super::error::Error;
-use super::learn::Vocabulary;
 use super::params::Params;
 
 /// Side of the squares that the ground is split by, in metres.
 const CELL_M: f64 = 50.0;
 /// Heights and slopes of a place are the means over so many squares to each side.
 const SMOOTHED: i64 = 2;
-/// What differs by this is as unlike as ground needs to be, for the choice of an example.
-const HEIGHT_UNIT_M: f64 = 60.0;
-const SLOPE_UNIT: f64 = 0.06;
 
 /// Which examples serve where.
 #[derive(Clone, Debug, Default)]
@@ -37,7 +34,7 @@ impl Domains {
     pub fn of(
         city: &City,
         area: &Polygon,
-        examples: &[Vocabulary],
+        examples: &[Character],
         params: &Params,
         run: &Run,
     ) -> Result<Self, Error> {
@@ -45,15 +42,48 @@ impl Domains {
         if given.is_empty() && !params.split {
             return Ok(Self::default());
         }
-        let bounds = area.bounds();
-        let size = (bounds.size() / CELL_M).ceil().max(Vec2::ONE);
-        let (columns, rows) = (size.x as usize, size.y as usize);
-        let empty =
-            Self { bounds: Some(bounds), columns, of: vec![0; columns * rows], weights: vec![] };
+        let empty = Self::over(area);
         if given.is_empty() {
             return Ok(empty.split(&Land::of(city), examples, params, run));
         }
         empty.named(given, &Land::of(city), examples, run)
+    }
+
+    /// Which of the examples of a library serve somewhere, in their order. Where nothing divides the
+    /// target, that is the one that fits it as a whole.
+    pub fn serving(
+        city: &City,
+        area: &Polygon,
+        library: &[Character],
+        params: &Params,
+        run: &Run,
+    ) -> Result<Vec<usize>, Error> {
+        let knows_ground = city.terrain.is_some() && library.iter().any(|c| c.relief.is_some());
+        let areas = params.areas.areas();
+        let is_open = |area: &Domain| area.examples.is_empty() && area.density.is_none();
+        if !knows_ground && (areas.is_empty() || areas.iter().any(is_open)) {
+            return Err(Error::Library);
+        }
+        let mut domains = Self::of(city, area, library, params, run)?;
+        if domains.weights.is_empty() {
+            let whole = Self::over(area);
+            let cells: Vec<usize> = (0..whole.of.len())
+                .filter(|i| area.contains(GridPoint::round(whole.center(*i))))
+                .collect();
+            let place = whole.mean(&cells, &Land::of(city));
+            let (weights, why) = place.fitting(library);
+            run.warn(format!("the target: {why}"));
+            domains.weights.push(weights);
+        }
+        let serves = |i: &usize| domains.weights.iter().any(|weights| weights[*i] > 0.0);
+        Ok((0..library.len()).filter(serves).collect())
+    }
+
+    fn over(area: &Polygon) -> Self {
+        let bounds = area.bounds();
+        let size = (bounds.size() / CELL_M).ceil().max(Vec2::ONE);
+        let (columns, rows) = (size.x as usize, size.y as usize);
+        Self { bounds: Some(bounds), columns, of: vec![0; columns * rows], weights: vec![] }
     }
 
     /// The weights of the examples at `p`; `None` where no domain says anything.
@@ -76,7 +106,7 @@ impl Domains {
         mut self,
         areas: &[Domain],
         land: &Land,
-        examples: &[Vocabulary],
+        examples: &[Character],
         run: &Run,
     ) -> Result<Self, Error> {
         for (number, area) in areas.iter().enumerate() {
@@ -85,13 +115,13 @@ impl Domains {
                 .filter(|i| polygon.contains(GridPoint::round(self.center(*i))))
                 .collect();
             let weights = if area.examples.is_empty() {
-                let ground = self.mean(&cells, land);
-                let (weights, why) = fitting(ground, examples);
+                let place = Place { density: area.density, ..self.mean(&cells, land) };
+                let (weights, why) = place.fitting(examples);
                 let usage = &area.usage;
                 run.warn(format!("area {} ({usage}): {why}", number + 1));
                 weights
             } else {
-                by_name(&area.examples, examples)?
+                character::by_name(&area.examples, examples)?
             };
             self.weights.push(weights);
             let domain = self.weights.len() as u16;
@@ -100,19 +130,19 @@ impl Domains {
         Ok(self)
     }
 
-    /// Mean height and slope of some squares.
-    fn mean(&self, cells: &[usize], land: &Land) -> (f64, f64) {
+    /// The ground of some squares.
+    fn mean(&self, cells: &[usize], land: &Land) -> Place {
         let dry = cells.iter().map(|i| self.center(*i)).filter(|p| !land.is_wet(*p));
         let (sum, count) = dry.fold(((0.0, 0.0), 0.0), |((h, s), n), p| {
             ((h + land.height_m(p), s + land.slope(p)), n + 1.0)
         });
         let count: f64 = f64::max(count, 1.0);
-        (sum.0 / count, sum.1 / count)
+        Place { height_m: sum.0 / count, slope: sum.1 / count, density: None }
     }
 
     /// Splits the ground by bins of height and slope; parts smaller than the least area join what is
     /// beside them most.
-    fn split(mut self, land: &Land, examples: &[Vocabulary], params: &Params, run: &Run) -> Self {
+    fn split(mut self, land: &Land, examples: &[Character], params: &Params, run: &Run) -> Self {
         let rows = self.of.len() / self.columns;
         let places: Vec<Vec2> = (0..self.of.len()).map(|i| self.center(i)).collect();
         let ground: Vec<(f64, f64)> =
@@ -131,7 +161,7 @@ impl Domains {
             numbers.entry(*part).or_default().push(i);
         }
         for cells in numbers.values() {
-            let (weights, why) = fitting(self.mean(cells, land), examples);
+            let (weights, why) = self.mean(cells, land).fitting(examples);
             let km2 = cells.len() as f64 * CELL_M * CELL_M / 1e6;
             run.warn(format!("domain {} of {km2:.2} km²: {why}", self.weights.len() + 1));
             self.weights.push(weights);
@@ -205,59 +235,6 @@ fn parts(bins: &[(i64, i64)], columns: usize, least: usize) -> Vec<usize> {
         members.entry(into).or_default().extend(cells);
     }
     part
-}
-
-/// Weights of the examples for ground of that mean height and slope, and a word why: the one whose
-/// own ground is most like it, all where no example knows its ground.
-fn fitting((height_m, slope): (f64, f64), examples: &[Vocabulary]) -> (Vec<f64>, String) {
-    let here = format!("{height_m:.0} m high, slope {:.0} %", slope * 100.0);
-    let cost = |example: &Vocabulary| {
-        let (own_m, own_slope) = example.relief?;
-        let apart = (own_m - height_m).abs() / HEIGHT_UNIT_M;
-        // Heights count up to a limit: a plain at sea level and one at 600 m are both plains.
-        Some(apart.min(2.0) + (own_slope - slope).abs() / SLOPE_UNIT)
-    };
-    let best = examples
-        .iter()
-        .enumerate()
-        .filter_map(|(i, e)| Some((i, cost(e)?)))
-        .min_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
-    match best {
-        Some((best, _)) => {
-            let mut weights = vec![0.0; examples.len()];
-            weights[best] = 1.0;
-            let example = &examples[best];
-            let (own_m, own_slope) = example.relief.unwrap_or_default();
-            let its = format!("{own_m:.0} m, {:.0} %", own_slope * 100.0);
-            (weights, format!("{here}; like `{}` ({its})", example.name))
-        }
-        None => {
-            let weights = examples.iter().map(|e| e.weight).collect();
-            (weights, format!("{here}; no example knows its ground, so all serve"))
-        }
-    }
-}
-
-fn by_name(wanted: &BTreeMap<String, f64>, examples: &[Vocabulary]) -> Result<Vec<f64>, Error> {
-    let mut weights = vec![0.0; examples.len()];
-    for (name, weight) in wanted {
-        let Some(i) = examples.iter().position(|e| *e.name == **name) else {
-            let known: Vec<&str> = examples.iter().map(|e| &*e.name).collect();
-            return Err(Error::Params(format!(
-                "`areas` names the example `{name}`, which is none of {}",
-                known.join(", ")
-            )));
-        };
-        if !(weight.is_finite() && *weight >= 0.0) {
-            return Err(Error::Params(format!("`areas` gives `{name}` the weight {weight}")));
-        }
-        weights[i] = *weight;
-    }
-    if weights.iter().sum::<f64>() > 0.0 {
-        Ok(weights)
-    } else {
-        Err(Error::Params("an area of `areas` gives no example any weight".into()))
-    }
 }
 
 #[cfg(test)]

@@ -26,6 +26,18 @@ pub enum Error {
         "the whole target lies in water or on ground too steep (see `slope`); choose another target"
     )]
     NoLand,
+    /// Nothing tells which example of a library fits.
+    #[error(
+        "nothing tells which example of the library fits: choose by ground (--terrain, and examples \
+         with terrain), by the `density` of areas (--areas), or by a drawn fragment (--like)"
+    )]
+    Library,
+    /// The drawn fragment cannot be looked for.
+    #[error("`like` {0}")]
+    Like(String),
+    /// No example has a junction.
+    #[error("`like` finds no junction in any example; choose other examples")]
+    NotLike,
     /// Nothing grew.
     #[error(
         "no street grew from {starts} start(s) in a target of {area_km2:.3} km²; enlarge the target or move the start"

@@ -5,7 +5,7 @@
 //! one than nearly all of these, and let a street set out towards them. Sea and hills of the example,
 //! far from every street, do not count: the target is flat land.
 
-use exurb_geom::{GridPoint, Polygon, RowPolygon, SegmentIndex, Vec2, polyline};
+use exurb_geom::{GridPoint, Polygon, RowPolygon, SegmentIndex, Vec2};
 use exurb_operation::Run;
 
 use super::error::Error;
@@ -21,19 +21,23 @@ const SLACK: f64 = 1.4;
 /// Places of the example that are looked at, one per this many square metres up to a number.
 const SAMPLE_M2: f64 = 5_000.0;
 const MOST_SAMPLES: f64 = 8_000.0;
-/// Distances are learned up to this, in metres.
-const FARTHEST_M: f64 = 1600.0;
+/// Distances are learned up to half of this, in metres; what lies farther lies nowhere near.
+pub const FARTHEST_M: f64 = 1600.0;
 /// Places of the example farther than this from every street are sea or hills, not city, in metres.
 const BUILT_UP_M: f64 = 250.0;
 /// Rounds at most: a round fills what the one before has brought within reach.
 const ROUNDS: usize = 10;
 
-/// How far from the streets of `index` a place must lie to count as empty, in metres: learned from the
-/// places of `area` that lie in the built-up parts, near some street of `all`.
-pub fn empty_distance_m(area: &Polygon, index: &SegmentIndex, all: &SegmentIndex) -> f64 {
-    let built_up = |p: &Vec2| street_distance(all, *p) < BUILT_UP_M;
-    let mut distances: Vec<f64> =
-        scattered(area).filter(built_up).map(|p| street_distance(index, p)).collect();
+/// Places of the built-up parts of `area`, near some street of `all`, with their distance to it.
+pub fn built_up(area: &Polygon, all: &SegmentIndex) -> Vec<(Vec2, f64)> {
+    let near = |p: Vec2| all.nearest_m(p, BUILT_UP_M).filter(|d| *d < BUILT_UP_M).map(|d| (p, d));
+    scattered(area).filter_map(near).collect()
+}
+
+/// How far from a street a place must lie to count as empty, in metres: learned from the distances of
+/// built-up places.
+pub fn empty_distance_m(distances: impl Iterator<Item = f64>) -> f64 {
+    let mut distances: Vec<f64> = distances.collect();
     distances.sort_by(f64::total_cmp);
     let rank = (distances.len() as f64 * NEAR_SHARE) as usize;
     distances.get(rank).map_or(FARTHEST_M, |d| SLACK * d).max(60.0)
@@ -96,22 +100,6 @@ fn set_out(growth: &mut Growth, edge: exurb_graph::EdgeId, at: Vec2, place: Vec2
     if let Some(direction) = direction.try_normalize() {
         procedural::step(growth, node, direction);
     }
-}
-
-fn street_distance(index: &SegmentIndex, p: Vec2) -> f64 {
-    let mut reach = 50.0;
-    while reach < FARTHEST_M {
-        let mut best = f64::INFINITY;
-        index.visit(exurb_geom::Bounds { min: p - reach, max: p + reach }, |e| {
-            best = best.min(polyline::nearest_on_segment(e.a, e.b, p).0.distance(p));
-            true
-        });
-        if best <= reach {
-            return best;
-        }
-        reach *= 2.0;
-    }
-    FARTHEST_M
 }
 
 /// Places scattered evenly over `area`, in no step with any street grid (the additive sequence of the

@@ -305,7 +305,7 @@ impl<'a> Growth<'a> {
         let mut street = street.clone();
         street.provenance = Provenance {
             origin: Origin::Example,
-            source: Some(self.plan.examples[example].name.clone()),
+            source: Some(self.plan.examples[example].character.name.clone()),
             part: Some(part.clone()),
         };
         street.name = None;

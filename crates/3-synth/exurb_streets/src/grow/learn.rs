@@ -1,7 +1,6 @@
 //! What an example teaches: its patches, its statistics, where growth may begin.
 
 use std::collections::{BTreeMap, VecDeque};
-use std::sync::Arc;
 
 use exurb_city::street_graph::StreetGraph;
 use exurb_city::{City, Role, block};
@@ -9,6 +8,7 @@ use exurb_geom::{GridPoint, LonLat, PointGrid, Polygon, SegmentIndex, Vec2, poly
 use exurb_graph::{EdgeId, Faces, NodeId};
 use exurb_measure::statistics::{StreetStatistics, street_statistics};
 
+use super::character::Character;
 use super::error::Error;
 use super::extent::Extent;
 use super::fit::Samples;
@@ -25,10 +25,8 @@ const BROUGHT_M: f64 = 200.0;
 /// What one example teaches.
 #[derive(Debug)]
 pub struct Vocabulary {
-    /// Name of the example, for `source`.
-    pub name: Arc<str>,
-    /// Its share where examples are mixed.
-    pub weight: f64,
+    /// What it is like as a whole.
+    pub character: Character,
     /// Main streets.
     pub main: Style,
     /// Local streets.
@@ -43,8 +41,6 @@ pub struct Vocabulary {
     pub large_block_m: f64,
     /// Values of the example's likeness gates.
     pub gates: BTreeMap<String, f64>,
-    /// Mean height in metres and mean slope of its ground, where it knows them.
-    pub relief: Option<(f64, f64)>,
     /// What its streets and junctions are like, for the finish.
     pub profile: Profile,
 }
@@ -164,7 +160,7 @@ pub fn learn(city: &City, params: &Params) -> Result<Vocabulary, Error> {
     }
     let is_main = main_edges(&graph);
     let polygons = kept_polygons(city, params)?;
-    let all = street_index(&graph, |_| true);
+    let built_up = fill::built_up(&city.target, &street_index(&graph, |_| true));
     let style = |role: Role| {
         let mut layer = Layer::of(&graph, role, &is_main);
         let (circle_m, reach_m, word) = match role {
@@ -176,11 +172,15 @@ pub fn learn(city: &City, params: &Params) -> Result<Vocabulary, Error> {
         let patches = patch::extract(&mut layer, &[&kept, &circles], reach_m, word);
         let connectors = Connectors::of(&layer, &patches);
         let statistics = street_statistics(&graph, role);
-        let streets = match role {
-            Role::Main => street_index(&graph, |id| is_main[id.index()]),
-            _ => all.clone(),
+        let empty_m = match role {
+            Role::Main => {
+                let streets = street_index(&graph, |id| is_main[id.index()]);
+                let off = |p: Vec2| streets.nearest_m(p, fill::FARTHEST_M / 2.0);
+                let distances = built_up.iter().map(|(p, _)| off(*p).unwrap_or(fill::FARTHEST_M));
+                fill::empty_distance_m(distances)
+            }
+            _ => fill::empty_distance_m(built_up.iter().map(|(_, distance)| *distance)),
         };
-        let empty_m = fill::empty_distance_m(&city.target, &streets, &all);
         let places: Vec<Vec2> = layer.nodes.iter().map(|node| node.at).collect();
         let places = PointGrid::new(&places, 100.0);
         let spacing_m = match role {
@@ -198,19 +198,15 @@ pub fn learn(city: &City, params: &Params) -> Result<Vocabulary, Error> {
     let samples = Samples::of(graph.edges().map(|(id, e)| (e.line_m(), is_main[id.index()])));
     let lines = graph.edges().map(|(_, edge)| edge.line_m());
     let extent = Extent::of(&city.target, lines, BROUGHT_M);
-    let relief = city.terrain.as_ref().and_then(|t| t.relief(&city.target));
-    let relief = relief.map(|r| (r.mean_m, r.slope));
     Ok(Vocabulary {
         extent,
-        name,
-        weight: 1.0,
+        character: Character::of(city, 1.0),
         main,
         local,
         samples,
         center,
         large_block_m,
         gates,
-        relief,
         profile: Profile::of(&graph),
     })
 }

@@ -11,7 +11,7 @@ pub fn describe(vocabularies: &[Vocabulary]) -> Value {
 
 fn of_example(example: &Vocabulary) -> Value {
     json!({
-        "example": &*example.name,
+        "example": &*example.character.name,
         "main": of_style(&example.main),
         "local": of_style(&example.local),
         "large_block_m": example.large_block_m,

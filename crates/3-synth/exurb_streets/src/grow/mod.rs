@@ -11,7 +11,7 @@
 //! ([`finish`]); 6 local edits bring the whole nearer to the example ([`polish`]).
 //!
 //! Which example grows where, and how it is turned, says the [`plan`], with [`domains`] where areas
-//! have examples of their own; what is given and what lies around, the [`ground`]; what water and
+//! have examples of their own ([`character`] chooses by ground, [`like`] by a drawn fragment); what is given and what lies around, the [`ground`]; what water and
 //! slopes allow, its [`relief`], and [`bridges`] cross the water.
 //!
 //! Departures: a patch whose connectors would cross a street is not refused, they end there in a
@@ -25,6 +25,7 @@
 
 mod bridges;
 mod cells;
+mod character;
 mod claims;
 mod detect;
 mod domains;
@@ -40,6 +41,7 @@ mod growth;
 mod layer;
 mod learn;
 mod lesson;
+mod like;
 mod network;
 mod params;
 mod patch;
@@ -63,12 +65,15 @@ use exurb_city::street_graph::StreetGraph;
 use exurb_city::{Area, City, Edit, block};
 use exurb_operation::{Card, Example, Failure, Operation, Run, Scope};
 
+use character::Character;
 use domains::Domains;
 pub use error::Error;
 pub use ground::Ground;
 pub use learn::{Vocabulary, learn};
+use like::{Found, Fragment};
 pub use params::Params;
 pub use plan::{Guide, Motion, Plan, Start};
+use starts::Like;
 pub use synthesize::synthesize;
 
 /// `streets grow`.
@@ -80,6 +85,8 @@ pub struct Grow;
 pub struct Learned {
     vocabularies: Vec<Vocabulary>,
     frames: Vec<exurb_geom::Frame>,
+    /// Where the only example is like the drawn fragment.
+    like: Option<Found>,
 }
 
 impl Operation for Grow {
@@ -94,14 +101,47 @@ impl Operation for Grow {
     type Learned = Learned;
 
     fn learn(examples: &[Example], params: &Params, run: &Run) -> Result<Learned, Failure> {
-        let mut vocabularies = Vec::new();
-        for example in examples {
-            run.check()?;
-            let vocabulary = learn(&example.city, params).map_err(failure)?;
-            vocabularies.push(Vocabulary { weight: example.weight, ..vocabulary });
+        let mut cities: Vec<(Arc<City>, f64)> =
+            examples.iter().map(|e| (e.city.clone(), e.weight)).collect();
+        let mut like = None;
+        if let Some(lines) = params.like.lines() {
+            let fragment = Fragment::of(lines, None).map_err(failure)?;
+            let found = cities.iter().map(|(city, _)| fragment.place_in(city)).collect();
+            let (i, found) = like::likest(found).ok_or_else(|| failure(Error::NotLike))?;
+            cities = vec![(Arc::new(fragment.around(&cities[i].0, found.source)), 1.0)];
+            like = Some(found);
         }
-        let frames = examples.iter().map(|e| e.city.frame.clone()).collect();
-        Ok(Learned { vocabularies, frames })
+        let mut vocabularies = Vec::new();
+        for (city, weight) in &cities {
+            run.check()?;
+            let vocabulary = learn(city, params).map_err(failure)?;
+            let character = Character { weight: *weight, ..vocabulary.character };
+            vocabularies.push(Vocabulary { character, ..vocabulary });
+        }
+        let frames = cities.iter().map(|(city, _)| city.frame.clone()).collect();
+        Ok(Learned { vocabularies, frames, like })
+    }
+
+    fn choose(
+        city: &City,
+        scope: &Scope,
+        library: &[Example],
+        params: &Params,
+        run: &Run,
+    ) -> Result<Vec<usize>, Failure> {
+        if let Some(lines) = params.like.lines() {
+            let fragment = Fragment::of(lines, Some(city)).map_err(failure)?;
+            let found = library.iter().map(|example| fragment.place_in(&example.city));
+            let found = like::likest(found.collect());
+            return found.map(|(i, _)| vec![i]).ok_or_else(|| failure(Error::NotLike));
+        }
+        let area = match scope {
+            Scope::Inside(polygon) => polygon,
+            Scope::All | Scope::Blocks(_) => &city.target,
+        };
+        let library: Vec<Character> =
+            library.iter().map(|e| Character::of(&e.city, e.weight)).collect();
+        Domains::serving(city, area, &library, params, run).map_err(failure)
     }
 
     fn describe(learned: &Learned) -> serde_json::Value {
@@ -166,17 +206,38 @@ impl Learned {
                 "`interpolation` mixes two examples, not {count}; name two with --example"
             )));
         }
+        let characters: Vec<Character> = examples.iter().map(|v| v.character.clone()).collect();
+        let domains = Domains::of(city, &ground.area, &characters, params, run)?;
+        let like = self.like(city, params, run)?;
+        let turn = if params.rotate == 0.0 { like.map_or(0.0, |l| l.turn_rad) } else { 0.0 };
         Ok(Plan {
             examples,
             params,
-            domains: Domains::of(city, &ground.area, examples, params, run)?,
-            starts: starts::starts(city, ground, examples, frames, params)?,
+            starts: starts::starts(city, ground, self, &domains, like, params)?,
+            domains,
             blend_m: params.blend * target.bounds().size().max_element(),
             interpolation: params.interpolation,
-            rotate_rad: params.rotate.to_radians(),
+            rotate_rad: params.rotate.to_radians() + turn,
             guide: starts::guide(city, frames, params)?,
             seed: run.seed(),
         })
+    }
+}
+
+impl Learned {
+    /// Where growth begins with the place that is like the drawn fragment, if there is one.
+    fn like(&self, city: &City, params: &Params, run: &Run) -> Result<Option<Like>, Error> {
+        let (Some(lines), Some(found)) = (params.like.lines(), self.like) else { return Ok(None) };
+        let Found { source, turn_rad, apart_m, .. } = found;
+        let place = self.frames[0].unproject(source);
+        run.warn(format!(
+            "drawn streets: like those of `{}` at {:.5},{:.5}, turned by {:.0}°, {apart_m:.0} m apart in the mean",
+            self.vocabularies[0].character.name,
+            place.lon,
+            place.lat,
+            turn_rad.to_degrees(),
+        ));
+        Ok(Some(Like { at: Fragment::of(lines, Some(city))?.at, source, turn_rad }))
     }
 }
 
@@ -223,6 +284,7 @@ fn failure(error: Error) -> Failure {
         Error::Params(_) | Error::StartOutside(_) | Error::StartInWater(_) => {
             Failure::Params { operation, message }
         }
+        Error::Library | Error::Like(_) | Error::NotLike => Failure::Params { operation, message },
         Error::Nothing { .. } | Error::NoLand => Failure::City { operation, message },
         Error::Cancelled => Failure::Cancelled,
     }

@@ -1,6 +1,6 @@
 //! What a user may turn.
 
-use exurb_operation::{DomainsFile, Params as _};
+use exurb_operation::{DomainsFile, LinesFile, Params as _};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -36,8 +36,13 @@ pub struct Params {
     /// A place where growth begins, as `LON,LAT` in the target or `LON,LAT=LON,LAT` with the place
     /// in the example that it begins with. Replaces `starts`.
     pub start: Vec<String>,
+    /// A map of some drawn streets: growth learns from the surroundings of the place of the examples
+    /// that is most like them, and begins with it, turned as they are, where they lie if that is in
+    /// the target. Replaces `start`.
+    pub like: LinesFile,
     /// A GeoJSON file of areas: `use` and `example`, or `examples` with weights, say what each grows
-    /// like; without examples, the one whose own ground is most like the area's.
+    /// like; without examples, the one whose own ground, and streets where `density` says how many
+    /// km/km², are most like the area's. `starts` are places as in `start`.
     pub areas: DomainsFile,
     /// Splits the target by height and slope into parts that each grow like the example whose own
     /// ground is most like theirs.
@@ -118,6 +123,7 @@ impl Default for Params {
             order: Order::First, // scores best within the examples, see docs/growth.md
             starts: 1,
             start: Vec::new(),
+            like: LinesFile::default(),
             areas: DomainsFile::default(),
             split: false,
             height_bin: 80.0,

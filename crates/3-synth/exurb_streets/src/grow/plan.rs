@@ -156,7 +156,9 @@ impl Plan<'_> {
         let weights = match (self.domains.weights_at(p), self.interpolation) {
             (Some(own), _) => own.to_vec(),
             (None, Some(share)) => vec![share, 1.0 - share],
-            _ if self.starts.is_empty() => self.examples.iter().map(|e| e.weight).collect(),
+            _ if self.starts.is_empty() => {
+                self.examples.iter().map(|e| e.character.weight).collect()
+            }
             _ if self.starts.iter().all(|s| s.example == first) => return first,
             _ => self.weights(p),
         };
@@ -174,7 +176,7 @@ impl Plan<'_> {
     pub fn shares(&self) -> impl Iterator<Item = (&Vocabulary, f64)> {
         self.examples.iter().enumerate().map(|(i, example)| match self.interpolation {
             Some(share) => (example, if i == 0 { share } else { 1.0 - share }),
-            None => (example, example.weight),
+            None => (example, example.character.weight),
         })
     }
 
@@ -190,7 +192,7 @@ impl Plan<'_> {
             } else {
                 f64::from(u8::from(square == least))
             };
-            weights[start.example] += self.examples[start.example].weight * near;
+            weights[start.example] += self.examples[start.example].character.weight * near;
         }
         weights
     }

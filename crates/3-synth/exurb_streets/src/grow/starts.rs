@@ -3,40 +3,64 @@
 use exurb_city::City;
 use exurb_geom::{Frame, GridPoint, LonLat, Polygon, Vec2};
 
+use super::Learned;
+use super::domains::Domains;
 use super::error::Error;
 use super::ground::Ground;
-use super::learn::Vocabulary;
 use super::params::{self, Params};
 use super::plan::{Guide, Start};
 use super::relief::Relief;
 
-/// Growth begins as told: at the points of the guideline, at the named places, else from the streets
-/// that are there, else spread over the target, the first in its middle. `frames` are those of the
-/// examples.
+/// Where a drawn fragment says that growth begins.
+#[derive(Clone, Copy, Debug)]
+pub struct Like {
+    /// Where it was drawn, if in the target.
+    pub at: Option<Vec2>,
+    /// The place in the only example.
+    pub source: Vec2,
+    /// By how much the example is turned to lie as it does, in radians.
+    pub turn_rad: f64,
+}
+
+/// Growth begins as told: at the points of the guideline, at the named places, with the drawn fragment,
+/// else from the streets that are there, else spread over the target, the first in its middle.
 pub fn starts(
     city: &City,
     ground: &Ground,
-    vocabularies: &[Vocabulary],
-    frames: &[Frame],
+    learned: &Learned,
+    domains: &Domains,
+    like: Option<Like>,
     params: &Params,
 ) -> Result<Vec<Start>, Error> {
     let target = &ground.target;
-    let count = vocabularies.len();
+    let count = learned.vocabularies.len();
     let start = |i: usize, at: Vec2, source: Option<Vec2>| {
-        let example = i % count;
-        Start { at, example, source: source.unwrap_or(vocabularies[example].center) }
+        let weights = domains.weights_at(at).filter(|_| params.guide.is_empty());
+        let example = weights.map_or(i % count, heaviest);
+        let center = learned.vocabularies[example].center;
+        Start { at, example, source: source.unwrap_or(center) }
     };
-    let named = if params.guide.is_empty() { &params.start } else { &params.guide };
-    if named.is_empty() && params.starts == 1 && ground.has_streets() {
-        return Ok(Vec::new());
+    let in_areas: Vec<String> =
+        params.areas.areas().iter().flat_map(|area| area.starts.clone()).collect();
+    let named = [&params.guide, &params.start, &in_areas].into_iter().find(|list| !list.is_empty());
+    if params.guide.is_empty()
+        && let Some(Like { at, source, .. }) = like
+    {
+        let at = at.filter(|p| ground.relief.bears(*p));
+        let middle = || spread(target, &ground.relief, 1).first().copied();
+        let at = at.or_else(middle).ok_or(Error::NoLand)?;
+        return Ok(vec![Start { at, example: 0, source }]);
     }
-    if named.is_empty() {
+    let Some(named) = named else {
+        if params.starts == 1 && ground.has_streets() {
+            return Ok(Vec::new());
+        }
         let places = spread(target, &ground.relief, (params.starts as usize).max(count));
         if places.is_empty() {
             return Err(Error::NoLand);
         }
         return Ok(places.into_iter().enumerate().map(|(i, at)| start(i, at, None)).collect());
-    }
+    };
     let mut out = Vec::new();
     for (i, text) in named.iter().enumerate() {
         let (place, source) = params::parse_start(text).map_err(Error::Params)?;
@@ -46,8 +70,9 @@ pub fn starts(
         if !ground.relief.bears(at) {
             return Err(Error::StartInWater(text.clone()));
         }
-        let source = source.and_then(|place| in_frame(&frames[i % count], place));
-        out.push(start(i, at, source));
+        let start = start(i, at, None);
+        let source = source.and_then(|place| in_frame(&learned.frames[start.example], place));
+        out.push(Start { source: source.unwrap_or(start.source), ..start });
     }
     // A guideline may run past the target.
     out.retain(|s| target.contains(GridPoint::round(s.at)));
@@ -55,6 +80,11 @@ pub fn starts(
         return Err(Error::Params("no point of the guideline lies in the target".into()));
     }
     Ok(out)
+}
+
+/// The first of the greatest weights.
+fn heaviest(weights: &[f64]) -> usize {
+    (0..weights.len()).rev().max_by(|a, b| weights[*a].total_cmp(&weights[*b])).unwrap_or(0)
 }
 
 /// The guideline of the parameters. Its points need a place in the example each.

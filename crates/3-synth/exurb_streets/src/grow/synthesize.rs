@@ -76,8 +76,8 @@ fn polish(streets: &mut StreetGraph, ground: &Ground, plan: &Plan) {
 fn dead_end_share(plan: &Plan) -> Option<f64> {
     let (mut sum, mut total) = (0.0, 0.0);
     for example in plan.examples {
-        sum += example.weight * example.gates.get("dead_end_share")?;
-        total += example.weight;
+        sum += example.character.weight * example.gates.get("dead_end_share")?;
+        total += example.character.weight;
     }
     (total > 0.0).then(|| sum / total)
 }

@@ -2,11 +2,13 @@ use std::sync::Arc;
 
 use exurb_city::street_graph::{self, StreetGraph, shares_by_origin};
 use exurb_city::{City, Class, ImportOptions, Junction, Role, Street};
-use exurb_geom::{Frame, GridPoint, Polygon, Vec2, trig};
-use exurb_operation::{Example, Failure, Run, Scope, erase};
+use exurb_geom::{Bounds, Frame, GridPoint, Polygon, SegmentIndex, Vec2, trig};
+use exurb_operation::{Example, Failure, Lines, Run, Scope, erase};
 use proptest::prelude::*;
+use serde_json::json;
 
 use super::layer::{Layer, NodeKind};
+use super::like::Fragment;
 use super::{Params, detect, learn, patch};
 
 /// A grid of `n` × `n` blocks of 100 m; every fifth street is a main one.
@@ -455,6 +457,106 @@ fn an_end_cut_off_by_a_motorway_is_no_dead_end() {
     let layer = Layer::of(&graph, Role::Local, &vec![false; graph.edge_bound()]);
     let count = |kind| layer.nodes.iter().filter(|n| n.kind == kind).count();
     assert_eq!((count(NodeKind::DeadEnd), count(NodeKind::Cut)), (2, 1));
+}
+
+fn builtin(name: &str) -> City {
+    let data = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../data");
+    let path = data.join(format!("{name}.osm.pbf"));
+    exurb_osm::read(&path, &ImportOptions::default()).expect("readable").city
+}
+
+/// The streets of a map within `reach_m` of `center`, turned around it and drawn on the meridian.
+fn drawn(city: &City, center: Vec2, reach_m: f64, turn_rad: f64) -> Lines {
+    let near = |p: &Vec2| p.distance(center) < reach_m;
+    let lines = city.streets.edges().map(|(_, e)| e.line_m());
+    let lines = lines.filter(|line| line.iter().all(near));
+    let point = |p: &Vec2| {
+        let q = trig::unit(turn_rad).rotate(*p - center);
+        [q.x, q.y]
+    };
+    let lines = lines.map(|line| line.iter().map(point).collect()).collect();
+    Lines { origin: [0.0, 0.0], lines }
+}
+
+#[test]
+fn a_fragment_of_a_map_is_found_where_it_was_cut_and_turned_as_it_was() {
+    let cities = ["suburb", "helsinki", "karhula"].map(builtin);
+    let middle = cities[1].target.bounds().center();
+    let drawn = drawn(&cities[1], middle + Vec2::new(150.0, -100.0), 320.0, 0.6);
+    let empty = City::empty(Frame::null_island(), square(Vec2::ZERO, 1000.0));
+    let fragment = Fragment::of(&drawn, Some(&empty)).expect("is a fragment");
+    let found = cities.iter().map(|city| fragment.place_in(city)).collect();
+    let (example, found) = super::like::likest(found).expect("finds one");
+    assert_eq!(example, 1);
+    assert!((found.turn_rad - 0.6).abs() < 0.02 && found.apart_m < 10.0, "{found:?}");
+    // Growth begins with that place, turned, where it was drawn.
+    let params = json!({ "continuation": 1.0, "like": &drawn });
+    let examples = cities.map(Example::new);
+    let library = erase::<super::Grow>();
+    let run = Run::new(1);
+    let chosen = library.choose(&empty, &Scope::All, &examples, params.clone(), &run);
+    assert_eq!(chosen.expect("chooses"), [1]);
+    let city = library.run(&empty, &Scope::All, &examples, params, &run).expect("grows").city;
+    let mut index = SegmentIndex::new(50.0);
+    city.streets.edges().for_each(|(id, e)| index.insert_line(id.0, &e.line_m()));
+    let points = drawn.lines.iter().flatten().map(|p| Vec2::new(p[0], p[1]));
+    let is_near = |p: &Vec2| !index.ids(Bounds { min: *p, max: *p }.grown(6.0)).is_empty();
+    let (near, all) = (points.clone().filter(is_near).count(), points.count());
+    assert!(near * 2 > all, "{near} of {all}");
+}
+
+#[test]
+fn a_library_is_asked_what_fits_and_says_when_nothing_tells() {
+    let height = |slope: f64| move |p: Vec2| 50.0 + slope * p.x.abs();
+    let on = |mut city: City, slope: f64, name: &str| {
+        let bounds = city.target.bounds().grown(200.0);
+        city.lay(
+            exurb_city::Terrain::over(bounds, 20.0, |p| height(slope)(p) as f32)
+                .expect("is ground"),
+        );
+        city.metadata.name = name.into();
+        city
+    };
+    let library = [on(grid(8), 0.0, "plain"), on(grid(8), 0.15, "hill")].map(Example::new);
+    let target = City::empty(Frame::null_island(), square(Vec2::ZERO, 1000.0));
+    let choose = |city: &City, params: serde_json::Value| {
+        erase::<super::Grow>().choose(city, &Scope::All, &library, params, &Run::new(1))
+    };
+    assert_eq!(choose(&on(target.clone(), 0.12, "t"), json!({})).expect("chooses"), [1]);
+    assert_eq!(choose(&on(target.clone(), 0.01, "t"), json!({})).expect("chooses"), [0]);
+    let error = choose(&target, json!({})).unwrap_err().to_string();
+    assert!(error.contains("--like"), "{error}");
+    // Without ground, density tells.
+    let area = |density: f64| {
+        let polygon = [[[-500.0, -500.0], [500.0, -500.0], [500.0, 500.0], [-500.0, 500.0]]];
+        json!({ "use": "flat", "examples": {}, "density": density, "polygon": polygon })
+    };
+    let chosen = choose(&target, json!({ "areas": { "areas": [area(20.0)] } }));
+    assert_eq!(chosen.expect("chooses").len(), 1);
+}
+
+#[test]
+fn areas_say_where_growth_begins_and_with_what() {
+    let example = grid(14);
+    let ring = [[[0.0, 0.0], [1000.0, 0.0], [1000.0, 1000.0], [0.0, 1000.0]]];
+    let at = example.frame.unproject(Vec2::new(333.0, 333.0));
+    let from = example.frame.unproject(Vec2::new(500.0, 500.0));
+    let start = format!("{},{}={},{}", at.lon, at.lat, from.lon, from.lat);
+    let area =
+        json!({ "use": "flat", "examples": { "grid": 1.0 }, "starts": [start], "polygon": ring });
+    let params = json!({ "continuation": 1.0, "areas": { "areas": [area] } });
+    let city = grow(&example, square(Vec2::splat(500.0), 800.0), params, 1).expect("grows");
+    // The grid lies so that its junction at 500, 500 lies on 333, 333.
+    let off = |v: i32| (v - 33_000).rem_euclid(100_000).min((33_000 - v).rem_euclid(100_000));
+    let inner = city.streets.nodes().filter(|(_, n)| !n.data.cut);
+    let (near, all) = inner.fold((0, 0), |(near, all), (_, n)| {
+        (near + usize::from(off(n.at.x) <= 2 && off(n.at.y) <= 2), all + 1)
+    });
+    assert!(near * 10 >= all * 9, "{near} of {all}");
+    let wrong = json!({ "areas": { "areas": [
+        json!({ "use": "flat", "examples": {}, "starts": ["99,0"], "polygon": ring })
+    ] } });
+    assert!(grow(&example, square(Vec2::splat(500.0), 800.0), wrong, 1).is_err());
 }
 
 #[test]

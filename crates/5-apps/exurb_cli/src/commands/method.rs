@@ -7,7 +7,9 @@ use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use exurb_operation::{AnyOperation, Card, Run};
 use exurb_recipe::{Export, Inputs, Recipe, Registry, Source, Step, Within, needs_city};
 
-use crate::options::{ExampleOptions, RunOptions, SeedOptions, TargetOptions, TerrainOptions};
+use crate::options::{
+    ExampleOptions, LibraryOptions, RunOptions, SeedOptions, TargetOptions, TerrainOptions,
+};
 use crate::output::Outputs;
 use crate::problem::Problem;
 use crate::{flags, job, summary};
@@ -45,6 +47,9 @@ struct InsideOptions {
     /// Grow new streets inside this GeoJSON or GeoPackage polygon of CITY; the rest stays as it is
     #[arg(long, value_name = "AREA.geojson", requires = "city")]
     scope: Option<PathBuf>,
+    /// Grow new streets only where --terrain gives CITY other ground than it has; the rest stays
+    #[arg(long, requires = "city", requires = "terrain", conflicts_with = "scope")]
+    changed: bool,
     /// A map whose streets lie there from the beginning and stay as they are
     #[arg(long, value_name = "STREETS.geojson")]
     fixed: Option<PathBuf>,
@@ -111,7 +116,7 @@ impl Method<'_> {
         if let Some(operation) = self.single() {
             command = flags::add(command, &operation.schema(), "Parameters");
         }
-        command = ExampleOptions::augment_args(command);
+        command = LibraryOptions::augment_args(ExampleOptions::augment_args(command));
         command = if self.needs_city() {
             ScopeOptions::augment_args(command)
         } else {
@@ -137,8 +142,9 @@ impl Method<'_> {
     fn recipe(&self, matches: &ArgMatches, registry: &Registry) -> Result<Recipe, Problem> {
         let SeedOptions { seed, .. } = given(matches)?;
         let examples = given::<ExampleOptions>(matches)?.sources();
+        let library = given::<LibraryOptions>(matches)?.library();
         let terrain = given::<TerrainOptions>(matches)?.source();
-        let mut recipe = Recipe { seed, examples, terrain, ..Recipe::default() };
+        let mut recipe = Recipe { seed, examples, library, terrain, ..Recipe::default() };
         let mut scope = Within::All;
         if self.needs_city() {
             recipe.city = matches.get_one::<PathBuf>("city").map(Source::new);
@@ -147,7 +153,7 @@ impl Method<'_> {
                 ScopeOptions { blocks: Some(blocks), .. } => Within::Blocks(blocks),
                 _ => Within::All,
             };
-        } else if recipe.examples.is_empty() && self.needs_example() {
+        } else if recipe.examples.is_empty() && recipe.library.is_none() && self.needs_example() {
             let message =
                 format!("{} learns from an example; name one with --example FILE", self.name);
             return Err(Problem::usage(message));
@@ -155,9 +161,10 @@ impl Method<'_> {
             recipe.city = matches.get_one::<PathBuf>("city").map(Source::new);
             match (&recipe.city, given(matches)?) {
                 (Some(_), InsideOptions { scope: Some(file), .. }) => scope = Within::File(file),
+                (Some(_), InsideOptions { changed: true, .. }) => scope = Within::Changed,
                 (Some(city), _) => {
                     let message = format!(
-                        "{} {} would replace all streets of {}; name the part to change with --scope AREA.geojson",
+                        "{} {} would replace all streets of {}; name the part to change with --scope AREA.geojson, or give it new ground with --changed --terrain",
                         self.cards().next().map_or("streets", |card| card.stage),
                         self.name,
                         city.file.display()

@@ -195,6 +195,34 @@ fn a_sketch_becomes_ground_and_given_streets_stay_in_a_scope() {
     assert!(report["on_land"]["steepest_grade"].as_f64().unwrap() <= 0.2);
     assert!(report["terrain"]["highest"].as_f64().unwrap() > 30.0);
 
+    // A hill more in the north-west: streets change there and nowhere else.
+    let mut drawn: Vec<Value> = serde_json::from_str::<Value>(
+        &fs::read_to_string(folder.path().join("sketch.geojson")).unwrap(),
+    )
+    .unwrap()["features"]
+        .as_array()
+        .unwrap()
+        .clone();
+    drawn.push(square(-0.01, 0.009, 0.0125, serde_json::json!({ "use": "mountain" })));
+    write("edited.geojson", drawn);
+    let again = "streets grow c.gpkg -e builtin:grid --changed --terrain edited.geojson";
+    let report = run(&format!("{again} -o f.gpkg --json")).ends(0).json();
+    assert_eq!(report["valid"], true, "{report}");
+    assert!(report["on_land"]["steepest_grade"].as_f64().unwrap() <= 0.2);
+    let lines = |city: &str| -> std::collections::BTreeSet<String> {
+        run(&format!("export {city}.gpkg --layer streets -o {city}.geojson")).ends(0);
+        let text = fs::read_to_string(folder.path().join(format!("{city}.geojson"))).unwrap();
+        let document: Value = serde_json::from_str(&text).unwrap();
+        let features = document["features"].as_array().unwrap().iter();
+        features.map(|f| f["geometry"]["coordinates"].to_string()).collect()
+    };
+    let (before, after) = (lines("c"), lines("f"));
+    let stayed = before.intersection(&after).count();
+    assert!(stayed * 2 > before.len() && stayed < before.len(), "{stayed} of {}", before.len());
+    let outcome =
+        run("streets grow c.gpkg -e builtin:grid --changed --terrain sketch.geojson -o g.gpkg");
+    assert!(outcome.ends(0).err.contains("the ground is as it was"));
+
     let path = serde_json::json!({
         "type": "Feature", "properties": { "highway": "primary" },
         "geometry": { "type": "LineString", "coordinates": [[10.004, 1.003], [10.0065, 1.0062]] },
@@ -210,4 +238,40 @@ fn a_sketch_becomes_ground_and_given_streets_stay_in_a_scope() {
     let wrong = "streets grow -e builtin:grid --target target.geojson --terrain wrong.geojson";
     let outcome = run(&format!("{wrong} -o e.gpkg"));
     assert!(outcome.ends(2).err.contains("`use` is `lava`"));
+}
+
+#[test]
+fn a_drawn_fragment_chooses_from_a_library() {
+    let folder = tempdir().unwrap();
+    let data = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../data");
+    fs::create_dir(folder.path().join("maps")).unwrap();
+    for name in ["helsinki.osm.pbf", "grid.osm.pbf", "suburb.osm.pbf"] {
+        fs::copy(data.join(name), folder.path().join("maps").join(name)).unwrap();
+    }
+    fs::write(folder.path().join("maps/notes.txt"), "no map").unwrap();
+    fs::write(folder.path().join("maps/broken.osm"), "<osm><node id=").unwrap();
+    let line = |points: [[f64; 2]; 2]| {
+        serde_json::json!({
+            "type": "Feature", "properties": {},
+            "geometry": { "type": "LineString", "coordinates": points },
+        })
+    };
+    // Four streets each way, 100 m apart.
+    let at = |k: i32| f64::from(k) * 0.0009;
+    let features: Vec<Value> = (0..4)
+        .flat_map(|k| [line([[at(k), 0.0], [at(k), at(3)]]), line([[0.0, at(k)], [at(3), at(k)]])])
+        .collect();
+    let document = serde_json::json!({ "type": "FeatureCollection", "features": features });
+    fs::write(folder.path().join("like.geojson"), document.to_string()).unwrap();
+    let run = |line: &str| exurb(folder.path(), &line.split(' ').collect::<Vec<_>>());
+    let grow = "streets grow --example-library maps --size 800x800";
+    let outcome = run(&format!("{grow} --like like.geojson -o c.gpkg --json")).ends(0);
+    assert!(outcome.err.contains("like those of `grid`"), "{}", outcome.err);
+    assert!(outcome.err.contains("broken.osm"), "{}", outcome.err);
+    assert_eq!(outcome.json()["valid"], true);
+    // The city remembers the example that was chosen, not the library.
+    fs::copy(data.join("grid.osm.pbf"), folder.path().join("grid.osm.pbf")).unwrap();
+    run("blocks parcels c.gpkg -o d.gpkg").ends(0);
+    let error = run(&format!("{grow} -o e.gpkg")).ends(2);
+    assert!(error.err.contains("nothing tells which example of the library fits"), "{}", error.err);
 }

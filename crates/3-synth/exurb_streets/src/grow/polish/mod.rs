@@ -9,8 +9,10 @@
 //! |---|---|
 //! | merge | two junctions of three streets close together become one of four |
 //! | remove | a street goes that was made to join others |
+//! | connect | a dead end that just misses a street is led on to it |
 //! | straighten | a street with a kink becomes straight |
 
+mod connect;
 mod merge;
 mod profile;
 mod remove;
@@ -73,6 +75,9 @@ pub fn polish(
     }
     for id in work.joints(&may_change) {
         work.remove(id);
+    }
+    for dart in work.dead_ends(&may_change) {
+        work.connect(dart, &may_change);
     }
     for id in work.kinked(&may_change) {
         work.straighten(id);
@@ -222,6 +227,36 @@ mod tests {
         let mut same = grid(18.0, 0.0);
         polish(&mut same, &Profile::of(&grid(18.0, 0.0)), &WEIGHTS, &level(), |_, _| true);
         assert_eq!(same, grid(18.0, 0.0));
+    }
+
+    #[test]
+    fn near_misses_are_connected_where_the_example_has_no_dead_ends() {
+        let wanted = Profile::of(&grid(0.0, 0.0));
+        // The streets of the middle row stop short of the street in the north.
+        let stopped = || {
+            let lines = grid(0.0, 0.0).edges().map(|(_, e)| e.line_m()).collect::<Vec<_>>();
+            let short = |line: Vec<Vec2>| {
+                let is_of_row = line[0].y == 200.0 && line[line.len() - 1].y == 300.0;
+                let end = line[line.len() - 1];
+                if is_of_row { vec![line[0], end - Vec2::new(0.0, 25.0)] } else { line }
+            };
+            let lines = lines.into_iter().map(|l| polyline::round(&short(l)));
+            street_graph::from_lines(lines.map(|l| (l, Street::default())))
+        };
+        let mut streets = stopped();
+        street_graph::dissolve_all(&mut streets);
+        let ends = |g: &StreetGraph| g.nodes().filter(|(id, _)| g.degree(*id) == 1).count();
+        let before = ends(&streets);
+        polish(&mut streets, &wanted, &WEIGHTS, &level(), |_, _| true);
+        assert_eq!(ends(&streets), before - 5);
+        assert_eq!(exurb_graph::laws::breaches(&streets), []);
+        // Where the example has them, they stay.
+        let mut same = stopped();
+        street_graph::dissolve_all(&mut same);
+        let wanted = Profile::of(&same);
+        let kept = same.clone();
+        polish(&mut same, &wanted, &WEIGHTS, &level(), |_, _| true);
+        assert_eq!(same, kept);
     }
 
     #[test]
