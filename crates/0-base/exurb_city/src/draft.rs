@@ -6,6 +6,7 @@ use exurb_geom::{Bounds, Frame, GridPoint, LonLat, Polygon, overlay};
 use exurb_graph::NodeId;
 
 use crate::hierarchy::{Hierarchy, assign_levels};
+use crate::simplify::{self, Simplify};
 use crate::street_graph::{self, Derive};
 use crate::{Area, Building, City, Feature, Metadata, Origin, Parcel, Provenance, Role};
 use crate::{StreetGraph, StreetMap, Terrain, completeness, cut, densest_square, facades, placing};
@@ -53,6 +54,8 @@ pub struct ImportOptions {
     pub part: Option<Part>,
     /// Let service roads and the like count as streets.
     pub with_other: bool,
+    /// Join dual carriageways into one street and shrink small roundabouts to junctions.
+    pub simplify: bool,
 }
 
 /// A half of the densest square, for training and test parts of one city.
@@ -121,6 +124,13 @@ impl Draft {
         let derive = Derive { with_other: options.with_other, area };
         let mut streets = street_graph::derive(&self.streets, &derive);
         mark_broken_ends(&mut streets, self.broken_ends);
+        if options.simplify {
+            let buildings = Arc::new(std::mem::take(&mut self.buildings));
+            let by_geometry = !simplify::knows_oneways(&streets);
+            let options = Simplify { by_geometry, buildings, ..Simplify::default() };
+            streets = simplify::simplify(&streets, &options);
+            self.buildings = Arc::unwrap_or_clone(options.buildings);
+        }
         assign_levels(&mut streets, &Hierarchy::default());
         facades::narrow_streets(&mut streets, &self.buildings);
 

@@ -73,6 +73,9 @@ pub struct Source {
     /// Let service roads and the like count as streets.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub with_service: bool,
+    /// Join dual carriageways into one street and shrink small roundabouts to junctions.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub simplify: bool,
     /// The ground under it, from a height map.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub terrain: Option<TerrainSource>,
@@ -194,7 +197,8 @@ impl Source {
     pub fn new(file: impl Into<PathBuf>) -> Self {
         let file = file.into();
         let (id, name, bbox, part) = (None, None, None, None);
-        Self { file, id, name, weight: 1.0, bbox, part, with_service: false, terrain: None }
+        let (with_service, simplify) = (false, false);
+        Self { file, id, name, weight: 1.0, bbox, part, with_service, simplify, terrain: None }
     }
 
     /// The word by which steps choose it: its id, else its name.
@@ -236,6 +240,7 @@ impl Source {
             bbox: self.bbox.map(corners),
             part: self.part.map(Half::part),
             with_other: self.with_service,
+            simplify: self.simplify,
         }
     }
 }

@@ -73,6 +73,9 @@ pub struct PartOptions {
     /// Let service roads and the like count as streets
     #[arg(long)]
     pub with_service: bool,
+    /// Join dual carriageways into one street and shrink small roundabouts to junctions
+    #[arg(long)]
+    pub simplify: bool,
 }
 
 /// What to learn from.
@@ -165,7 +168,8 @@ impl TerrainOptions {
 impl PartOptions {
     /// The source with these options.
     pub fn apply(&self, source: Source) -> Source {
-        Source { part: self.part, bbox: self.bbox, with_service: self.with_service, ..source }
+        let Self { part, bbox, with_service, simplify } = *self;
+        Source { part, bbox, with_service, simplify, ..source }
     }
 }
 

@@ -10,8 +10,8 @@ use super::error::Error;
 /// What differs by this is as unlike as ground needs to be, for the choice of an example.
 const HEIGHT_UNIT_M: f64 = 60.0;
 const SLOPE_UNIT: f64 = 0.06;
-/// Of densities that is a ratio of 1.5, as a logarithm.
-const DENSITY_UNIT: f64 = 0.4;
+/// Of densities that is a ratio of one and a half.
+const DENSITY_UNIT: f64 = 0.5;
 
 /// What is told of an example before anything is learned from it.
 #[derive(Clone, Debug)]
@@ -85,9 +85,10 @@ impl Place {
             // Heights count up to a limit: a plain at sea level and one at 600 m are both plains.
             apart.min(2.0) + (slope - self.slope).abs() / SLOPE_UNIT
         });
-        let density = self
-            .density
-            .map(|wanted| (wanted.max(0.01) / example.density.max(0.01)).ln().abs() / DENSITY_UNIT);
+        let density = self.density.map(|wanted| {
+            let ratio = wanted.max(0.01) / example.density.max(0.01);
+            (ratio.max(1.0 / ratio) - 1.0) / DENSITY_UNIT
+        });
         match (ground, density) {
             // An example whose ground is unknown stands behind those of fitting ground.
             (None, Some(density)) => Some(density + 2.0),

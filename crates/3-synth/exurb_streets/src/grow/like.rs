@@ -6,7 +6,7 @@
 //! Growth then learns from the surroundings of that place alone, so that what was drawn goes on.
 //!
 //! Junctions of the example are looked at one by one, the streets around each compared with the
-//! fragment in what they are like (lengths, bends, degrees, angles, density, alignment, slope). Around
+//! fragment in what they are like (lengths, bends, degrees, angles, alignment, slope). Around
 //! the likest ones the fragment is laid on the streets, junction on junction and street on street, and
 //! the mean distance between both is what decides.
 
@@ -30,13 +30,21 @@ const SNAP_M: f64 = 3.0;
 /// Growth learns from streets around the place up to this many times as far as the fragment reaches,
 /// and up to this far at least. Metres.
 const AROUND: f64 = 3.0;
-const LEAST_AROUND_M: f64 = 700.0;
+const LEAST_AROUND_M: f64 = 1000.0;
 /// Points are compared this far apart, in metres.
 const STEP_M: f64 = 12.0;
 /// Streets farther apart than this have nothing to do with each other, in metres.
 const APART_M: f64 = 40.0;
 /// Places whose streets are laid on the fragment, for each example.
-const LAID: usize = 160;
+const LAID: usize = 700;
+/// Of these, places that are measured with all points instead of every fourth.
+const MEASURED: usize = 48;
+const STRIDE: usize = 4;
+/// What lies near a drawn street counts for this share, what lies near a street of the example for the
+/// rest: nobody draws every street.
+const DRAWN_SHARE: f64 = 0.75;
+/// How much unlikeness in kind counts beside distance.
+const KIND: f64 = 0.2;
 /// Of these, places where the fragment is moved and turned a little to lie better.
 const SHIFTED: usize = 12;
 /// A slope that differs by this counts as much as streets that have nothing in common.
@@ -49,8 +57,6 @@ const RIM: f64 = 0.85;
 #[derive(Debug)]
 pub struct Fragment {
     profile: Profile,
-    /// Length for each area of the circle around it, in metres for each square metre.
-    density: f64,
     alignment: f64,
     reach_m: f64,
     /// Points along its streets, around its anchor.
@@ -96,14 +102,13 @@ struct Laid {
 
 impl Laid {
     fn cost(&self) -> f64 {
-        self.unlike + 4.0 * self.apart_m / APART_M
+        KIND * self.unlike + 4.0 * self.apart_m / APART_M
     }
 }
 
 /// What the streets within reach of a place are like.
 struct Around {
     profile: Profile,
-    density: f64,
     alignment: f64,
 }
 
@@ -167,8 +172,8 @@ impl Fragment {
         let slope = terrain
             .and_then(|(terrain, at)| mean(points.iter().filter_map(|p| terrain.slope(at + *p))));
         let legs = streets.darts(anchor).iter().map(|d| streets.direction(*d, 30.0)).collect();
-        let Around { profile, density, alignment } = around;
-        Ok(Self { profile, density, alignment, reach_m, points, index, legs, slope, at })
+        let Around { profile, alignment } = around;
+        Ok(Self { profile, alignment, reach_m, points, index, legs, slope, at })
     }
 
     /// The place of an example that is most like it; `None` where the example has no junctions.
@@ -197,6 +202,11 @@ impl Fragment {
             .filter_map(|(unlike, id)| self.laid_on(&graph, &index, *id, *unlike))
             .collect();
         laid.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
+        laid.truncate(MEASURED);
+        for laid in &mut laid {
+            laid.apart_m = self.apart_m(&index, laid, laid.turn_rad, laid.off, 1);
+        }
+        laid.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
         laid.truncate(SHIFTED);
         let found: Vec<Found> =
             laid.into_par_iter().map(|laid| self.shifted(&index, laid)).collect();
@@ -220,13 +230,12 @@ impl Fragment {
         out
     }
 
-    /// How much what is around a place differs from the fragment in kind.
+    /// How much what is around a place differs from the fragment in kind. How dense streets are does
+    /// not count: nobody draws every street.
     fn unlike(&self, around: &Around, slope: Option<f64>) -> f64 {
-        let weights = Weights { lengths: 1.0, bends: 1.0, junctions: 1.0, density: 0.5 };
-        let ratio = (around.density.max(1e-6) / self.density.max(1e-6)).ln().abs();
+        let weights = Weights { lengths: 1.0, bends: 1.0, junctions: 1.0, density: 0.0 };
         let slopes = self.slope.zip(slope).map_or(0.0, |(a, b)| (a - b).abs() / SLOPE_UNIT);
         around.profile.distance(&self.profile, &weights) / 4.0
-            + ratio
             + (around.alignment - self.alignment).abs()
             + slopes.min(2.0)
     }
@@ -259,18 +268,29 @@ impl Fragment {
         let laid = Laid { center, points, unlike, turn_rad: 0.0, off: Vec2::ZERO, apart_m: 0.0 };
         let measured = turns
             .into_iter()
-            .map(|turn_rad| (self.apart_m(index, &laid, turn_rad, Vec2::ZERO), turn_rad));
+            .map(|turn_rad| (self.apart_m(index, &laid, turn_rad, Vec2::ZERO, STRIDE), turn_rad));
         let (apart_m, turn_rad) = measured.min_by(|a, b| a.0.total_cmp(&b.0))?;
         Some(Laid { apart_m, turn_rad, ..laid })
     }
 
-    /// Mean distance between the fragment and the streets it is laid on, turned by that and moved.
-    fn apart_m(&self, index: &SegmentIndex, laid: &Laid, turn_rad: f64, off: Vec2) -> f64 {
+    /// Mean distance between the fragment and the streets it is laid on, turned by that and moved; every
+    /// `stride`th point is looked at.
+    fn apart_m(
+        &self,
+        index: &SegmentIndex,
+        laid: &Laid,
+        turn_rad: f64,
+        off: Vec2,
+        stride: usize,
+    ) -> f64 {
         let (turn, back) = (trig::unit(turn_rad), trig::unit(-turn_rad));
         let center = laid.center + off;
-        let there = self.points.iter().map(|p| near_m(index, center + back.rotate(*p)));
-        let here = laid.points.iter().map(|p| near_m(&self.index, turn.rotate(*p - off)));
-        (mean(there).unwrap_or(APART_M) + mean(here).unwrap_or(APART_M)) / 2.0
+        let there =
+            self.points.iter().step_by(stride).map(|p| near_m(index, center + back.rotate(*p)));
+        let here =
+            laid.points.iter().step_by(stride).map(|p| near_m(&self.index, turn.rotate(*p - off)));
+        let [there, here] = [mean(there), mean(here)].map(|m| m.unwrap_or(APART_M));
+        DRAWN_SHARE * there + (1.0 - DRAWN_SHARE) * here
     }
 
     /// Moved and turned a little as long as that brings both nearer: ever smaller steps.
@@ -282,7 +302,7 @@ impl Fragment {
             let turned = [-1.0, 1.0].map(|sign| (laid.turn_rad + sign * turn_rad, laid.off));
             let tried = moved.into_iter().chain(turned);
             let measured =
-                tried.map(|(turn, off)| (self.apart_m(index, &laid, turn, off), turn, off));
+                tried.map(|(turn, off)| (self.apart_m(index, &laid, turn, off, 1), turn, off));
             match measured.min_by(|a, b| a.0.total_cmp(&b.0)) {
                 Some((apart_m, turn_rad, off)) if apart_m < laid.apart_m - 0.01 => {
                     laid = Laid { apart_m, turn_rad, off, ..laid };
@@ -333,11 +353,7 @@ impl Around {
         nodes.sort_unstable();
         nodes.dedup();
         nodes.into_iter().for_each(|n| profile.count_node(graph, n, 1.0));
-        Self {
-            profile,
-            density: length_m / (std::f64::consts::PI * reach_m * reach_m).max(1.0),
-            alignment: fourfold.length() / length_m.max(1.0),
-        }
+        Self { profile, alignment: fourfold.length() / length_m.max(1.0) }
     }
 }
 
