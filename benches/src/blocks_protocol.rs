@@ -15,7 +15,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use exurb_benches::set;
-use exurb_city::{Block, BlockClass, Building, City, ImportOptions, Part, area};
+use exurb_blocks::library::{OPEN_SHARE, OpenLand};
+use exurb_city::{Block, BlockClass, Building, City, ImportOptions, Part};
 use exurb_likeness::measures::Family;
 use exurb_likeness::{BUILT, Floor, Panel, Place, Reference, Scorecard};
 use exurb_operation::{AnyOperation, Example, Run, Scope};
@@ -115,9 +116,10 @@ fn filled_blocks(city: &City) -> impl Iterator<Item = &Block> {
 }
 
 /// Share of all blocks of a map together that buildings of `city`, which has the same blocks, cover; those
-/// that the map keeps open do not count.
+/// that are kept open, since at least half of them is open land or water on the map, do not count.
 fn coverage(map: &City, city: &City) -> f64 {
-    let counts = |b: &&Block| !b.land_use.as_deref().is_some_and(area::is_open);
+    let open = OpenLand::of(map);
+    let counts = |b: &&Block| open.share(&b.polygon).is_none_or(|(_, share)| share < OPEN_SHARE);
     let blocks: Vec<&Block> = filled_blocks(map).filter(counts).collect();
     let own = |b: &&Building| !b.is_part && blocks.iter().any(|block| block.id == b.block);
     let built = city.buildings.iter().filter(own).map(|b| b.polygon.area_m2());

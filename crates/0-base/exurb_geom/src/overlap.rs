@@ -6,8 +6,9 @@ use crate::{Bounds, GridPoint, Polygon, Vec2, grid, overlay};
 /// Area that two polygons share, in m²; 0 where a quick look tells that it is below `slack_m2`.
 pub fn shared_m2(a: &Polygon, b: &Polygon, slack_m2: f64) -> f64 {
     let (p, q) = (a.bounds(), b.bounds());
-    let size = (p.max.min(q.max) - p.min.max(q.min)).max(Vec2::ZERO);
-    if size.x * size.y <= slack_m2 || apart(a, b) {
+    let both = Bounds { min: p.min.max(q.min), max: p.max.min(q.max) };
+    let size = both.size().max(Vec2::ZERO);
+    if size.x * size.y <= slack_m2 || apart(a, b, both) {
         return 0.0;
     }
     overlay::intersection(a, b).iter().map(Polygon::area_m2).sum()
@@ -32,17 +33,39 @@ pub fn outside_m2(polygon: &Polygon, around: &Polygon) -> f64 {
 }
 
 /// Surely no common inside: no sides cross, and no vertex or middle of a side of one lies inside
-/// the other. Neighbours with a common wall are told apart so.
-fn apart(a: &Polygon, b: &Polygon) -> bool {
+/// the other. Neighbours with a common wall are told apart so. Only what reaches the box that `both`
+/// have in common is looked at.
+fn apart(a: &Polygon, b: &Polygon, both: Bounds) -> bool {
+    let (near_a, near_b) = (sides_in(a, both), sides_in(b, both));
     let crossing =
-        a.segments().any(|(p, q)| b.segments().any(|(r, s)| grid::cross_properly(p, q, r, s)));
-    !crossing && !reaches_into(a, b) && !reaches_into(b, a) && a.exterior() != b.exterior()
+        near_a.iter().any(|&(p, q)| near_b.iter().any(|&(r, s)| grid::cross_properly(p, q, r, s)));
+    !crossing
+        && !reaches_into(&near_a, b, &near_b, both)
+        && !reaches_into(&near_b, a, &near_a, both)
+        && a.exterior() != b.exterior()
 }
 
-fn reaches_into(a: &Polygon, b: &Polygon) -> bool {
-    let inside =
-        |p: GridPoint| b.contains(p) && !b.segments().any(|(r, s)| grid::on_segment(r, s, p));
-    a.segments().any(|(p, q)| inside(p) || inside(GridPoint::round((p.to_m() + q.to_m()) / 2.0)))
+/// Sides whose boxes meet a box.
+fn sides_in(polygon: &Polygon, both: Bounds) -> Vec<(GridPoint, GridPoint)> {
+    let meets = |&(p, q): &(GridPoint, GridPoint)| {
+        let (p, q) = (p.to_m(), q.to_m());
+        Bounds { min: p.min(q), max: p.max(q) }.intersects(both)
+    };
+    polygon.segments().filter(meets).collect()
+}
+
+fn reaches_into(
+    sides: &[(GridPoint, GridPoint)],
+    other: &Polygon,
+    sides_of_other: &[(GridPoint, GridPoint)],
+    both: Bounds,
+) -> bool {
+    let inside = |p: GridPoint| {
+        both.contains(p.to_m())
+            && other.contains(p)
+            && !sides_of_other.iter().any(|&(r, s)| grid::on_segment(r, s, p))
+    };
+    sides.iter().any(|&(p, q)| inside(p) || inside(GridPoint::round((p.to_m() + q.to_m()) / 2.0)))
 }
 
 #[cfg(test)]

@@ -78,6 +78,11 @@ impl Database {
         &self.entries
     }
 
+    /// The entry that is nearest by size and aspect. O(log n).
+    pub fn nearest(&self, outline: &Outline) -> Option<u32> {
+        self.index.nearest_neighbor(&place(outline)).map(|found| found.data)
+    }
+
     /// The entries most like the query, best first; only those that `serves` accepts. Ties go to the
     /// lower index. O(log n) for the index, then one time warp a candidate.
     pub fn query(&self, query: &Query<'_>, serves: impl Fn(u32) -> bool) -> Vec<Match> {

@@ -5,7 +5,8 @@
 //! Departure: rotations are not tried one by one. Two cheapest paths need not cross, so the path of a
 //! rotation lies between those of a smaller and a larger one (Maes 1990, *On a Cyclic String-to-String
 //! Correction Problem*): halving the rotations again and again gives the same minimum in
-//! O(n² log n) instead of O(n³).
+//! O(n² log n) instead of O(n³). Rotations are left out whose paths cannot be as cheap as one near the
+//! cheapest straight path: a path costs at least the least cost of each row inside its band.
 
 use crate::shape_context::Costs;
 
@@ -23,13 +24,53 @@ pub struct Warp {
 /// costs. Both outlines have at least one sample.
 pub fn cyclic(costs: &Costs) -> Warp {
     let columns = costs.columns();
-    let mut search = Search { costs, best: None, table: Vec::new() };
+    let mut search = Search { costs, best: None, bound: f32::INFINITY, table: Vec::new() };
+    search.bound = search.likely();
     let whole = Band { low: vec![0; costs.rows()], high: vec![2 * columns as u32; costs.rows()] };
     let first = search.path_from(0, &whole);
     let last = first.iter().map(|(i, j)| (*i, j + columns as u32)).collect::<Vec<_>>();
     search.between(0, columns as u32, &first, &last);
     let (sum, path) = search.best.unwrap_or_default();
     Warp { cost: f64::from(sum) / path.len().max(1) as f64, path }
+}
+
+/// Sums of the same costs in another order differ by less than this factor.
+const ROUNDING: f32 = 1.0001;
+
+/// The rotation of the cheapest of the paths that go on in both outlines, which have as many samples, at
+/// every step.
+fn straight(costs: &Costs) -> usize {
+    let n = costs.columns();
+    let mut sums = vec![0.0f32; n];
+    for i in 0..n {
+        // Rotation k pairs row i with column i + k.
+        let (tail, head) = costs.row(i).split_at(i);
+        for (sum, cost) in sums.iter_mut().zip(head.iter().chain(tail)) {
+            *sum += cost;
+        }
+    }
+    (0..n).min_by(|a, b| sums[*a].total_cmp(&sums[*b])).unwrap_or(0)
+}
+
+/// Paths near a straight one stray by so many samples.
+const STRAY: usize = 12;
+
+/// The lesser of two numbers, neither of them not a number: one instruction, other than [`f32::min`].
+fn lesser(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// The least of some numbers, none of them not a number; infinite where there are none.
+fn least_of(values: &[f32]) -> f32 {
+    let mut lanes = [f32::INFINITY; 8];
+    let chunks = values.chunks_exact(8);
+    let rest = chunks.remainder().iter().copied().fold(f32::INFINITY, f32::min);
+    for chunk in chunks {
+        for (lane, value) in lanes.iter_mut().zip(chunk) {
+            *lane = lesser(*value, *lane);
+        }
+    }
+    lanes.into_iter().fold(rest, f32::min)
 }
 
 /// First and last column to be looked at in each row.
@@ -55,6 +96,8 @@ impl Band {
 struct Search<'a> {
     costs: &'a Costs,
     best: Option<(f32, Vec<(u32, u32)>)>,
+    /// No path that costs more is the cheapest one.
+    bound: f32,
     /// Sums of the last table, to be used again.
     table: Vec<f32>,
 }
@@ -65,10 +108,42 @@ impl Search<'_> {
         if to - from < 2 {
             return;
         }
+        let band = Band::between(left, right, self.costs.rows());
+        if self.least(&band) > self.bound * ROUNDING {
+            return;
+        }
         let middle = (from + to) / 2;
-        let path = self.path_from(middle, &Band::between(left, right, self.costs.rows()));
+        let path = self.path_from(middle, &band);
         self.between(from, middle, left, &path);
         self.between(middle, to, &path, right);
+    }
+
+    /// The cost of a cheap path: the cheapest near the cheapest straight one. Infinite where the outlines
+    /// differ in their numbers of samples.
+    fn likely(&mut self) -> f32 {
+        let n = self.costs.columns();
+        if self.costs.rows() != n {
+            return f32::INFINITY;
+        }
+        let start = straight(self.costs);
+        let low = |i: usize| (start + i.saturating_sub(STRAY)) as u32;
+        let high = |i: usize| (start + i + STRAY) as u32;
+        let band = Band { low: (0..n).map(low).collect(), high: (0..n).map(high).collect() };
+        self.path_from(start as u32, &band);
+        // The search itself begins with nothing found.
+        self.best.take().map_or(f32::INFINITY, |(sum, _)| sum)
+    }
+
+    /// What every path inside a band costs at least.
+    fn least(&self, band: &Band) -> f32 {
+        let columns = self.costs.columns();
+        let of_row = |i: usize| {
+            let (row, low, high) = (self.costs.row(i), band.low[i] as usize, band.high[i] as usize);
+            let (before, after) = (low.min(columns)..(high + 1).min(columns), high + 1);
+            let behind = low.max(columns) - columns..after.max(columns) - columns;
+            least_of(&row[before]).min(least_of(&row[behind.start.min(behind.end)..behind.end]))
+        };
+        (0..self.costs.rows()).map(of_row).sum()
     }
 
     /// The cheapest path of one rotation inside a band.
@@ -96,7 +171,7 @@ impl Search<'_> {
             let start = if i == 0 { start as usize } else { usize::MAX };
             for (j, sum) in (low..).zip(row.iter_mut()) {
                 let up = sum_above(j);
-                let least = if j == start { 0.0 } else { diagonal.min(up).min(before) };
+                let least = if j == start { 0.0 } else { lesser(lesser(diagonal, up), before) };
                 before = least + costs[if j < columns { j } else { j - columns }];
                 (*sum, diagonal) = (before, up);
             }
@@ -106,6 +181,7 @@ impl Search<'_> {
         let path = self.traced(&offsets, &span, start, end);
         if self.best.as_ref().is_none_or(|(least, _)| sum < *least) {
             self.best = Some((sum, path.clone()));
+            self.bound = self.bound.min(sum);
         }
         path
     }

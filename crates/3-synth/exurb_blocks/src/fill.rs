@@ -3,19 +3,15 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use exurb_city::{
-    Block, BlockClass, Building, City, Edit, Feature, FeatureShape, Origin, Provenance, block,
-};
-use exurb_geom::{GridPoint, offset, overlap};
+use exurb_city::{Block, BlockClass, City, Edit, Feature, FeatureShape, Origin, Provenance, block};
+use exurb_geom::{GridPoint, offset};
 use exurb_operation::{Failure, Run, Scope};
 use rayon::prelude::*;
 
 use crate::choice::{Candidate, Choice, Choosing, Learned, Way, Ways, choose};
-use crate::database::Layout;
 use crate::filling::{Filling, written};
 use crate::kerb::Kerb;
 use crate::lawful::lawful;
-use crate::library::are_near;
 use crate::refine::Why;
 use crate::scoped::Scoped;
 
@@ -39,12 +35,14 @@ pub struct Limits {
 impl Limits {
     /// Every layout suits.
     pub const NONE: Self = Self { most_cost: f64::INFINITY, least_kept: 0.0 };
+
+    /// Does the candidate suit its block? One without buildings suits blocks of any shape.
+    pub fn admit(&self, candidate: &Candidate) -> bool {
+        let is_alike = candidate.cost <= self.most_cost || candidate.laid.buildings.is_empty();
+        candidate.is_same || (is_alike && candidate.kept >= self.least_kept)
+    }
 }
 
-/// From this share of the example's coverage on, a block is built enough.
-const ENOUGH: f64 = 0.95;
-/// Buildings of other layouts keep this far from those that stand, in metres.
-const APART_M: f64 = 1.5;
 /// Features this near to the kerb, behind the pavement, stand along the street, in metres.
 const ALONG_STREET_M: f64 = 1.0;
 
@@ -68,7 +66,7 @@ pub fn fill(
     let wanted: Vec<bool> =
         blocks.iter().map(|b| b.class == BlockClass::Block && scoped.holds(b.id)).collect();
     run.phase("choosing layouts");
-    let choices = choose(city, &blocks, &wanted, learned, choosing, ways, run)?;
+    let choices = choose(city, &blocks, &wanted, learned, choosing, ways, limits, run)?;
     let along = AlongStreets::of(city, &blocks, choosing.pavement);
     let mut left = Vec::new();
     let mut tally: BTreeMap<String, u64> = BTreeMap::new();
@@ -144,8 +142,7 @@ fn filling(
         }),
         Choice::Filled(list) => {
             let chosen = list.first()?;
-            let suits = chosen.cost <= limits.most_cost && chosen.kept >= limits.least_kept;
-            (suits || chosen.is_same).then(|| of_candidates(block, list, along, learned, choosing))
+            limits.admit(chosen).then(|| of_candidates(block, list, along, learned, choosing))
         }
     };
     made.map(|f| if choosing.parcels { f.with_cadastre(block, choosing.pavement) } else { f })
@@ -182,7 +179,7 @@ fn of_candidates(
         ground.into_iter().map(|p| (p, class.clone())).collect::<Vec<_>>()
     });
     Filling {
-        buildings: completed(block, list, layout),
+        buildings: chosen.laid.buildings.clone(),
         parcels: Vec::new(),
         things,
         open: open.filter(|_| !chosen.is_same).unwrap_or_default(),
@@ -190,34 +187,6 @@ fn of_candidates(
         pavement_m: choosing.pavement,
         provenance: Provenance { origin: Origin::Example, ..layout.provenance() },
     }
-}
-
-/// The chosen layout's buildings; where they cover clearly less than in the example, buildings of the
-/// other candidates that find room between them help out, larger ones first.
-fn completed(block: &Block, list: &[Candidate], layout: &Layout) -> Vec<Building> {
-    let chosen = &list[0];
-    let mut out = chosen.laid.buildings.clone();
-    let wanted_m2 = layout.coverage * block.polygon.area_m2();
-    let mut missing_m2 = wanted_m2 - chosen.laid.built_m2();
-    if chosen.is_same || missing_m2 < (1.0 - ENOUGH) * wanted_m2 {
-        return out;
-    }
-    let mut others: Vec<&Building> =
-        list[1..].iter().flat_map(|c| &c.laid.buildings).filter(|b| !b.is_part).collect();
-    others.sort_by(|a, b| b.polygon.area_m2().total_cmp(&a.polygon.area_m2()));
-    for building in others {
-        let area_m2 = building.polygon.area_m2();
-        let near = |b: &Building| {
-            !b.is_part
-                && (are_near(&b.polygon, &building.polygon, APART_M)
-                    || overlap::shared_m2(&b.polygon, &building.polygon, 0.0) > 0.0)
-        };
-        if area_m2 <= missing_m2 * 1.1 && !out.iter().any(near) {
-            missing_m2 -= area_m2;
-            out.push(building.clone());
-        }
-    }
-    out
 }
 
 /// Street furniture of each block.

@@ -25,6 +25,8 @@ pub struct Kerb {
     starts: Vec<(usize, f64)>,
 }
 
+/// Places are first searched for within this distance, in metres.
+const FIRST_M: f64 = 8.0;
 /// Places farther than this are searched for one by one, in metres.
 const FARTHEST_M: f64 = 500.0;
 
@@ -55,19 +57,24 @@ impl Kerb {
 
     /// The ring and place on it nearest to `p`. About O(1) near the kerb.
     pub fn nearest(&self, p: Vec2) -> (usize, Place) {
-        let at = GridPoint::round(p);
-        let mut near = Vec::new();
-        let mut within_m = 8.0;
+        let mut within_m = FIRST_M;
         while within_m <= FARTHEST_M {
-            self.grid.near(at, at, (within_m * 1000.0) as i32, &mut near);
-            let best = self.best(p, near.iter().copied());
-            if let Some(found) = best.filter(|(_, place)| place.distance_m <= within_m) {
+            if let Some(found) = self.within(p, within_m) {
                 return found;
             }
             within_m *= 3.0;
         }
         let all = 0..self.starts.len() as u32;
         self.best(p, all).unwrap_or((0, Place { at_m: 0.0, distance_m: 0.0, direction: Vec2::X }))
+    }
+
+    /// The same where it is no farther than that.
+    fn within(&self, p: Vec2, within_m: f64) -> Option<(usize, Place)> {
+        let at = GridPoint::round(p);
+        let mut near = Vec::new();
+        self.grid.near(at, at, (within_m * 1000.0).ceil() as i32, &mut near);
+        let best = self.best(p, near.into_iter());
+        best.filter(|(_, place)| place.distance_m <= within_m)
     }
 
     /// Is `p` in the block whose kerb this is? Even-odd, over the rings.
@@ -77,13 +84,22 @@ impl Kerb {
 
     /// Distance of an outline to the kerb of `block` in metres, negative where it reaches over it.
     pub fn clearance_m(&self, outline: &Polygon, block: &Polygon) -> f64 {
+        self.clearance_up_to_m(f64::INFINITY, outline, block)
+    }
+
+    /// The same where it is less than `most_m`, else that.
+    pub fn clearance_up_to_m(&self, most_m: f64, outline: &Polygon, block: &Polygon) -> f64 {
         if self.crosses(outline) {
             return -1.0;
         }
-        let mut least = f64::INFINITY;
+        let mut least = most_m;
         for p in outline.exterior() {
-            let distance_m = self.nearest(p.to_m()).1.distance_m;
-            least = least.min(if block.contains(*p) { distance_m } else { -distance_m });
+            let inside = block.contains(*p);
+            let distance_m = match inside && most_m <= FIRST_M {
+                true => self.within(p.to_m(), most_m).map_or(most_m, |found| found.1.distance_m),
+                false => self.nearest(p.to_m()).1.distance_m,
+            };
+            least = least.min(if inside { distance_m } else { -distance_m });
         }
         // Corners of the kerb that come near a long wall, or stand in the building.
         let bounds = outline.bounds().grown(least.max(0.0));

@@ -23,17 +23,15 @@ pub fn lawful(city: &City, mut edit: Edit, run: &Run) -> Edit {
     buildings.iter_mut().zip(1..).for_each(|(building, id)| building.id = id);
     let mut checked = edit.clone().apply(city);
     let mut gone = BTreeSet::new();
+    checked.buildings = Arc::new(buildings.clone());
     for _ in 0..ROUNDS {
-        let kept = buildings.iter().filter(|b| !gone.contains(&b.id)).cloned();
-        checked.buildings = Arc::new(kept.collect());
-        let report = exurb_city::laws::laws(&checked);
-        let broken: BTreeSet<u32> = report
-            .breaches
-            .iter()
-            .filter(|breach| LAWS.contains(&breach.law))
-            .map(|breach| breach.id)
-            .filter(|id| buildings[*id as usize - 1].provenance.origin != Origin::Imported)
-            .collect();
+        let report = exurb_city::laws::building_laws(&checked);
+        let against = report.breaches.iter().filter(|breach| LAWS.contains(&breach.law));
+        // Of two that overlap both are told, so that next time no others need be looked at.
+        let involved: BTreeSet<u32> = against.map(|breach| breach.id).collect();
+        let is_placed =
+            |id: &u32| buildings[*id as usize - 1].provenance.origin != Origin::Imported;
+        let broken: BTreeSet<u32> = involved.iter().copied().filter(is_placed).collect();
         if broken.is_empty() {
             break;
         }
@@ -44,6 +42,8 @@ pub fn lawful(city: &City, mut edit: Edit, run: &Run) -> Edit {
         by_size.truncate(by_size.len().div_ceil(2));
         run.tally("footprints dropped: they broke a law", by_size.len() as u64);
         gone.extend(by_size);
+        let left = involved.iter().filter(|id| !gone.contains(*id));
+        checked.buildings = Arc::new(left.map(|id| buildings[*id as usize - 1].clone()).collect());
     }
     buildings.iter_mut().zip(own).for_each(|(building, id)| building.id = id);
     let mut number = 0;

@@ -82,25 +82,42 @@ pub fn lay(
                 polygon
             }
         };
-        let follow = wish.motion.then(&between(&body.polygon, &polygon));
-        let place = |b: &Building, polygon| Building {
-            polygon,
-            parcel: 0,
-            provenance: provenance.clone(),
-            ..b.clone()
-        };
-        out.buildings.push(place(&wish.what.building, polygon));
-        let parts = wish.what.parts.iter().filter_map(|part| {
-            follow.apply_polygon(&part.polygon).map(|polygon| place(part, polygon))
-        });
-        out.buildings.extend(parts);
+        put(&mut out.buildings, wish, &body.polygon, polygon, &provenance);
     }
     let moved = things.iter().filter_map(|wish| moved_thing(wish, ground));
     out.things = moved.map(|f| Feature { provenance: provenance.clone(), ..f }).collect();
     out
 }
 
-fn body(wish: &Wish<'_, Footprint>, open: &OpenNearby<'_>, pavement_m: f64) -> Result<Body, Why> {
+/// Adds a building whose wished outline became `polygon`, and its parts.
+pub(crate) fn put(
+    out: &mut Vec<Building>,
+    wish: &Wish<'_, Footprint>,
+    wished: &Polygon,
+    polygon: Polygon,
+    provenance: &Provenance,
+) {
+    let follow = wish.motion.then(&between(wished, &polygon));
+    let place = |b: &Building, polygon| Building {
+        polygon,
+        parcel: 0,
+        provenance: provenance.clone(),
+        ..b.clone()
+    };
+    out.push(place(&wish.what.building, polygon));
+    let parts =
+        wish.what.parts.iter().filter_map(|part| {
+            follow.apply_polygon(&part.polygon).map(|polygon| place(part, polygon))
+        });
+    out.extend(parts);
+}
+
+/// A footprint where it is wished for, or why it may not stand there.
+pub(crate) fn body(
+    wish: &Wish<'_, Footprint>,
+    open: &OpenNearby<'_>,
+    pavement_m: f64,
+) -> Result<Body, Why> {
     let polygon = wish.motion.apply_polygon(&wish.what.building.polygon).ok_or(Why::Shape)?;
     if !wish.what.on_open_land && open.forbids(&polygon) {
         return Err(Why::OpenLand);

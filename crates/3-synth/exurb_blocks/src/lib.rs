@@ -18,6 +18,7 @@ pub mod database;
 mod fill;
 mod filling;
 pub mod footprints;
+mod infill;
 mod kerb;
 mod lawful;
 mod lay;

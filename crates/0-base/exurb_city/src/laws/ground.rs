@@ -40,7 +40,7 @@ fn add_parcel_laws(report: &mut LawReport, city: &City) {
     report.at_least("street_access_share", share, 0.99, locked);
 }
 
-fn add_building_laws(report: &mut LawReport, city: &City, pieces: &Pieces) {
+pub fn add_building_laws(report: &mut LawReport, city: &City, pieces: &Pieces) {
     let buildings: Vec<_> = city.buildings.iter().filter(|b| !b.is_part).collect();
     let outlines: Vec<(u32, &Polygon)> = buildings.iter().map(|b| (b.id, &b.polygon)).collect();
     let found = invalid("invalid_buildings", "buildings", outlines.iter().copied());

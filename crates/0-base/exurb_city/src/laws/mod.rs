@@ -150,5 +150,12 @@ pub fn laws(city: &City) -> LawReport {
     report
 }
 
+/// Measures the laws of buildings alone, as [`laws`] does.
+pub fn building_laws(city: &City) -> LawReport {
+    let mut report = LawReport::default();
+    ground::add_building_laws(&mut report, city, &Pieces::of(&city.streets));
+    report
+}
+
 #[cfg(test)]
 mod tests;

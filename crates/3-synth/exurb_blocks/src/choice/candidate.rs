@@ -1,12 +1,14 @@
 //! One example block tried in one block.
 
-use exurb_city::{Block, Class, StreetGraph};
+use exurb_city::{Block, Building, Class, StreetGraph};
 use exurb_geom::{GridPoint, Polygon, Rigid, offset, polyline};
 use exurb_match::{Match, Outline, align};
 
 use super::descriptor::Descriptor;
 use super::{Choosing, Learned, Ways};
 use crate::database::Layout;
+use crate::fill::Limits;
+use crate::infill::{Room, add_free, infill};
 use crate::kerb::Kerb;
 use crate::lay::{Laid, Spacing, lay};
 use crate::library::OpenNearby;
@@ -32,6 +34,8 @@ pub struct Candidate {
     pub cost: f64,
     /// How it was laid.
     pub way: Way,
+    /// The rigid motion that lays it on the block.
+    pub motion: Rigid,
     /// What came of it.
     pub laid: Laid,
     /// Its looks there.
@@ -72,6 +76,21 @@ impl<'a> Site<'a> {
             ends: ends_in(block, streets),
         }
     }
+
+    /// What stands in the block, for its own layout or for another.
+    fn standing(&self, is_same: bool) -> Vec<Polygon> {
+        let ends = self.ends.iter().filter(|_| !is_same);
+        self.standing.iter().chain(ends).cloned().collect()
+    }
+
+    fn ground<'g>(&'g self, standing: &'g [Polygon], at_home: bool) -> Ground<'g> {
+        Ground { block: &self.block.polygon, kerb: &self.kerb, standing, at_home }
+    }
+
+    fn looks(&self, laid: &Laid) -> Descriptor {
+        let footprints = laid.buildings.iter().filter(|b| !b.is_part).map(|b| &b.polygon);
+        Descriptor::of(&self.block.polygon, &self.kerb, footprints)
+    }
 }
 
 /// The last metres of the block's pedestrian dead ends, as long as the street is wide.
@@ -96,6 +115,15 @@ fn ends_in(block: &Block, streets: &StreetGraph) -> Vec<Polygon> {
 /// Outlines that lie this near to each other, root mean square, are the same, in metres.
 const SAME_M: f64 = 0.002;
 
+/// Shifts that make up a layout's size, where every candidate is filled up and where the chosen one is.
+const COARSE: u32 = 2;
+const FINE: u32 = 4;
+/// Buildings are added that are larger than this share of their layout's; where these do not suffice,
+/// smaller ones, too.
+pub const USUAL: f64 = 0.5;
+pub const SMALL: f64 = 0.25;
+pub const ANY: f64 = 0.0;
+
 /// Tries the layout of a match.
 pub fn tried(
     site: &Site<'_>,
@@ -103,6 +131,7 @@ pub fn tried(
     learned: &Learned,
     choosing: &Choosing,
     ways: &Ways,
+    limits: Limits,
     open: &OpenNearby<'_>,
 ) -> Candidate {
     let layout = &learned.database.layouts[found.entry as usize];
@@ -110,12 +139,8 @@ pub fn tried(
     let motion = align::refine(found.motion, outline, &site.ring);
     let deviation_m = align::deviation_m(&motion, outline, &site.ring);
     let is_same = deviation_m < SAME_M && found.shape_cost < 0.05;
-    let (block, kerb) = (&site.block.polygon, &site.kerb);
-    let mut standing = site.standing.clone();
-    if !is_same {
-        standing.extend(site.ends.iter().cloned());
-    }
-    let ground = Ground { block, kerb, standing: &standing, at_home: is_same };
+    let standing = site.standing(is_same);
+    let ground = site.ground(&standing, is_same);
     let spacing = Spacing { pavement_m: choosing.pavement, tolerance: choosing.tolerance };
     let transferred = || {
         let (footprints, things) = layout.wished(motion.into());
@@ -129,12 +154,52 @@ pub fn tried(
     let as_whole = !ways.retarget
         || (ways.transfer && (is_same || deviation_m <= ways.deviation_m || layout.open.is_some()))
         || layout.footprints.is_empty();
-    let (way, laid) =
+    let (way, mut laid) =
         if as_whole { (Way::Transferred, transferred()) } else { (Way::Retargeted, anew()) };
-    let footprints = laid.buildings.iter().filter(|b| !b.is_part).map(|b| &b.polygon);
-    let looks = Descriptor::of(&site.block.polygon, &site.kerb, footprints);
+    // A layout that lost too much is made good before it is given up.
+    for least in [USUAL, ANY] {
+        if !is_same && kept(&laid) < limits.least_kept {
+            let goal_m2 = layout.coverage * site.block.polygon.area_m2();
+            let room = Room { ground: &ground, open, spacing, goal_m2, shifts: COARSE, least };
+            infill(&mut laid, layout, &motion, &room);
+        }
+    }
+    let looks = site.looks(&laid);
     let kept = kept(&laid);
-    Candidate { entry: found.entry, cost: found.cost, way, laid, looks, kept, is_same }
+    Candidate { entry: found.entry, cost: found.cost, way, motion, laid, looks, kept, is_same }
+}
+
+/// Builds the block of the candidate `first` on up to `goal_m2`, as far as there is room, with buildings
+/// of the other candidates where they lie, then with more of its layout and of theirs; none smaller than
+/// the quantile `least` of their sizes.
+pub fn filled_up(
+    site: &Site<'_>,
+    tried: &mut [Candidate],
+    first: usize,
+    learned: &Learned,
+    choosing: &Choosing,
+    open: &OpenNearby<'_>,
+    (goal_m2, least): (f64, f64),
+) {
+    let is_same = tried[first].is_same;
+    let standing = site.standing(is_same);
+    let ground = site.ground(&standing, is_same);
+    let spacing = Spacing { pavement_m: choosing.pavement, tolerance: choosing.tolerance };
+    let room = Room { ground: &ground, open, spacing, goal_m2, shifts: FINE, least };
+    let others = (0..tried.len()).filter(|k| *k != first);
+    let sources: Vec<(u32, Rigid)> =
+        std::iter::once(first).chain(others).map(|k| (tried[k].entry, tried[k].motion)).collect();
+    let laid: Vec<Building> = (0..tried.len())
+        .filter(|k| *k != first)
+        .flat_map(|k| tried[k].laid.buildings.iter().cloned())
+        .collect();
+    let chosen = &mut tried[first];
+    add_free(&mut chosen.laid, &laid, goal_m2, least);
+    for (entry, motion) in sources {
+        let layout = &learned.database.layouts[entry as usize];
+        infill(&mut chosen.laid, layout, &motion, &room);
+    }
+    chosen.looks = site.looks(&chosen.laid);
 }
 
 fn retargeted(

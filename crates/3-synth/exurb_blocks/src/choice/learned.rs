@@ -8,7 +8,7 @@ use super::candidate::Site;
 use super::descriptor::{Descriptor, Spread};
 use super::field::Sample;
 use super::kinds::{Kind, Situation};
-use crate::database::{BY_SHAPE, BlockDatabase};
+use crate::database::{BY_SHAPE, BlockDatabase, Layout};
 use crate::kerb::Kerb;
 use crate::neighbours::{MainStreets, neighbours};
 
@@ -19,6 +19,10 @@ pub struct Learned {
     pub database: BlockDatabase,
     /// How much they differ, and neighbours among them.
     pub spread: Spread,
+    /// Share of all blocks together that is built on; those that the map keeps open do not count.
+    pub coverage: f64,
+    /// The same of the blocks of each kind.
+    coverages: BTreeMap<Kind, f64>,
     /// How densely and how high ordinary blocks are built.
     pub samples: Vec<Sample>,
     /// Where which kind of block lies.
@@ -75,12 +79,26 @@ impl Learned {
             height_m: l.height_m,
             weight: l.weight,
         });
+        let all = database.layouts.iter().filter(|l| !l.is_given_open);
+        let mut by_kind: BTreeMap<Kind, Vec<&Layout>> = BTreeMap::new();
+        for layout in &database.layouts {
+            by_kind.entry(layout.kind.clone()).or_default().push(layout);
+        }
+        let coverages =
+            by_kind.into_iter().map(|(kind, list)| (kind, coverage(list.into_iter()))).collect();
         Ok(Self {
+            coverage: coverage(all),
+            coverages,
             samples: samples.collect(),
             spread: Spread::of(&looks, &pairs),
             situations,
             database,
         })
+    }
+
+    /// The coverage of the example's blocks of a kind.
+    pub fn coverage_of(&self, kind: &Kind) -> f64 {
+        self.coverages.get(kind).copied().unwrap_or(0.0)
     }
 
     /// Names of the examples with layouts, in order.
@@ -92,17 +110,30 @@ impl Learned {
 
     /// The layout of the very block, where it lies in an example.
     pub fn same(&self, site: &Site<'_>) -> Option<Match> {
+        let near = |a: f64, b: f64| (a - b).abs() <= 1e-4 * b;
+        let is_alike = |entry: u32| {
+            let outline = self.database.outline(entry);
+            near(outline.area_m2, site.outline.area_m2)
+                && near(outline.length_m, site.outline.length_m)
+        };
+        // Most blocks need no time warp to be told apart.
+        self.database.nearest(&site.outline).filter(|entry| is_alike(*entry))?;
         let attributes = Attributes::default();
         let query =
             Query { candidates: 1, weights: BY_SHAPE, ..Query::new(&site.outline, &attributes) };
         let found = self.database.query(&query, |_| true).into_iter().next()?;
         let outline = self.database.outline(found.entry);
-        let near = |a: f64, b: f64| (a - b).abs() <= 1e-4 * b;
-        let alike = near(outline.area_m2, site.outline.area_m2)
-            && near(outline.length_m, site.outline.length_m);
-        let motion = alike.then(|| align::refine(found.motion, outline, &site.ring))?;
+        let motion = align::refine(found.motion, outline, &site.ring);
         (align::deviation_m(&motion, outline, &site.ring) < 0.002).then_some(found)
     }
+}
+
+/// Share of layouts' blocks together that is built on, examples by their weight.
+fn coverage<'a>(layouts: impl Iterator<Item = &'a Layout>) -> f64 {
+    let (built, area) = layouts.fold((0.0, 0.0), |(built, area), l| {
+        (built + l.weight * l.built_m2(), area + l.weight * l.kerb.area_m2())
+    });
+    if area > 0.0 { built / area } else { 0.0 }
 }
 
 /// Coverage and mean height of each block that is built on, as the city has it.

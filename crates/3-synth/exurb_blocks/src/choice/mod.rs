@@ -2,9 +2,10 @@
 //!
 //! Steps: 1 blocks on open land stay open; a block that lies in an example as it is takes its own layout;
 //! 2 parks, schools and shops are drawn ([`kinds`]); 3 density and height follow a smooth field
-//! ([`field`]); 4 every block asks the database for like blocks and tries the best out ([`candidate`]);
-//! 5 blocks choose together, so that neighbours look alike as the example's do ([`joint`],
-//! [`descriptor`]) and what is built adds up to the field.
+//! ([`field`]), brought to the example's coverage in all ([`level`]); 4 every block asks the database for
+//! like blocks and tries the best out ([`candidate`]); 5 blocks choose together, so that neighbours look
+//! alike as the example's do ([`joint`], [`descriptor`]) and what is built adds up to the example's
+//! coverage; 6 where it does not yet, blocks with room are filled up ([`together`]).
 
 mod candidate;
 pub mod descriptor;
@@ -12,14 +13,15 @@ pub mod field;
 pub mod joint;
 pub mod kinds;
 mod learned;
+mod level;
 mod options;
 mod style;
+mod together;
 
 use exurb_city::{Block, City, Terrain};
-use exurb_geom::{BoxGrid, GridPoint, Polygon, overlap, trig};
+use exurb_geom::{BoxGrid, Polygon, overlap};
 use exurb_match::{Attributes, Match, Query};
-use exurb_operation::{Failure, Rng, Run, rng};
-use rand::RngExt;
+use exurb_operation::{Failure, Run, rng};
 use rayon::prelude::*;
 
 pub use candidate::{Candidate, Site, Way};
@@ -28,11 +30,14 @@ pub use options::Choosing;
 pub use style::Styles;
 
 use crate::database::{Layout, relief_m};
-use crate::library::{OpenLand, Surroundings};
+use crate::fill::Limits;
+use crate::library::{OPEN_SHARE, OpenLand, Surroundings};
 use crate::neighbours::{MainStreets, neighbours};
 use crate::retarget::Settings;
 use field::Place;
 use kinds::{Kind, Situation};
+use level::Expected;
+use together::Together;
 
 /// Ways a layout may be laid.
 #[derive(Clone, Debug)]
@@ -59,21 +64,6 @@ pub enum Choice {
     Filled(Vec<Candidate>),
 }
 
-/// From this share of given open land on, a block stays open.
-const GIVEN_OPEN_SHARE: f64 = 0.5;
-/// What a factor of e between wanted and reached coverage costs.
-const COVERAGE_COST: f64 = 0.15;
-/// What a layout that is lost altogether costs.
-const LOSS_COST: f64 = 0.3;
-/// What neighbours cost that look as different as any two blocks, at a coherence of 1.
-const PAIR_COST: f64 = 0.12;
-/// What two neighbours of one layout cost.
-const SAME_LAYOUT_COST: f64 = 0.06;
-/// Spread of the draw among the best.
-const PICK_SPREAD: f64 = 0.04;
-/// Rounds in which the coverage of all is brought to the field's.
-const LEVEL_ROUNDS: usize = 6;
-
 /// Chooses for every block that `wanted` names. The order of choices is that of `blocks`.
 pub fn choose(
     city: &City,
@@ -82,6 +72,7 @@ pub fn choose(
     learned: &Learned,
     choosing: &Choosing,
     ways: &Ways,
+    limits: Limits,
     run: &Run,
 ) -> Result<Vec<Choice>, Failure> {
     let styles = Styles::of(
@@ -106,7 +97,7 @@ pub fn choose(
     // A block that lies in an example as it is takes after it, park or not.
     let given = |(block, same): (&Block, &Option<Match>)| {
         let share = if same.is_none() { open.share(&block.polygon) } else { None };
-        share.filter(|(_, s)| *s >= GIVEN_OPEN_SHARE).map(|(class, _)| class)
+        share.filter(|(_, s)| *s >= OPEN_SHARE).map(|(class, _)| class)
     };
     let given: Vec<Option<std::sync::Arc<str>>> = blocks.par_iter().zip(&same).map(given).collect();
     for (site, given) in sites.iter_mut().zip(&given) {
@@ -117,7 +108,21 @@ pub fn choose(
     run.check()?;
     let around = Around::of(city, blocks, wanted);
     let kinds = around.kinds(&sites, &given, &same, learned, choosing, run);
-    let field = field::field(&around.places, &learned.samples, learned.spread.coherence);
+    let mut field = field::field(&around.places, &learned.samples, learned.spread.coherence);
+    let expected = |i: usize| {
+        let free = sites[i].is_some() && same[i].is_none();
+        let area_m2 = blocks[i].polygon.area_m2();
+        let usual = learned.coverage_of(&kinds[i]);
+        let coverage = if kinds[i].is_none() { field.coverage[i] } else { usual };
+        free.then_some(Expected { area_m2, coverage, is_ordinary: kinds[i].is_none() })
+    };
+    let expected: Vec<Option<Expected>> = (0..blocks.len()).map(expected).collect();
+    let free: Vec<Expected> = expected.iter().flatten().copied().collect();
+    let total_m2 = level::total_m2(&free, learned.coverage, choosing.coverage);
+    let factor = level::factor(&free, total_m2);
+    for (coverage, expected) in field.coverage.iter_mut().zip(&expected) {
+        *coverage = expected.map_or(*coverage, |e| level::raised(&e, factor));
+    }
     let tried: Vec<Result<Vec<Candidate>, Failure>> = (0..blocks.len())
         .into_par_iter()
         .map(|i| {
@@ -136,15 +141,24 @@ pub fn choose(
                 ),
             };
             let tries = found.iter().take(choosing.tries.max(choosing.alternatives) as usize);
-            Ok(tries.map(|m| candidate::tried(site, m, learned, choosing, ways, &near)).collect())
+            Ok(tries
+                .map(|m| candidate::tried(site, m, learned, choosing, ways, limits, &near))
+                .collect())
         })
         .collect();
-    let tried: Vec<Vec<Candidate>> = tried.into_iter().collect::<Result<_, _>>()?;
+    let mut tried: Vec<Vec<Candidate>> = tried.into_iter().collect::<Result<_, _>>()?;
     run.check()?;
-    let wishes: Vec<f64> = (0..blocks.len())
-        .map(|i| if kinds[i].is_none() { field.coverage[i] } else { f64::NAN })
-        .collect();
-    let chosen = chosen(blocks, &tried, &wishes, &around, learned, choosing, run);
+    let together = Together {
+        blocks,
+        expected: &expected,
+        wishes: &field.coverage,
+        total_m2,
+        learned,
+        choosing,
+        limits,
+    };
+    let chosen = together.chosen(&tried, &around.places, run);
+    together.fill_up(&mut tried, &chosen, &sites, &open);
     Ok(tried
         .into_iter()
         .zip(chosen)
@@ -282,98 +296,4 @@ impl Around {
             &mut run.stream(rng::fnv1a(b"kinds")),
         )
     }
-}
-
-/// The candidates of each block, the chosen one first.
-fn chosen(
-    blocks: &[Block],
-    tried: &[Vec<Candidate>],
-    wishes: &[f64],
-    around: &Around,
-    learned: &Learned,
-    choosing: &Choosing,
-    run: &Run,
-) -> Vec<Vec<usize>> {
-    let noise: Vec<Vec<f64>> = blocks
-        .iter()
-        .zip(tried)
-        .map(|(block, tried)| {
-            let key = rng::place_key(GridPoint::round(block.polygon.centroid()));
-            noise(tried.len(), choosing, &mut run.stream(key))
-        })
-        .collect();
-    let area = |i: usize| blocks[i].polygon.area_m2();
-    let free = |i: &usize| wishes[*i].is_finite() && !tried[*i].is_empty() && !tried[*i][0].is_same;
-    let wanted_m2: f64 = (0..blocks.len()).filter(free).map(|i| wishes[i] * area(i)).sum();
-    let neighbours: Vec<Vec<usize>> = around.places.iter().map(|p| p.neighbours.clone()).collect();
-    let strength = PAIR_COST * choosing.coherence * learned.spread.coherence;
-    let pair = |(i, a): (usize, usize), (j, b): (usize, usize)| {
-        let (a, b) = (&tried[i][a], &tried[j][b]);
-        let one = if a.entry == b.entry && !a.is_same { SAME_LAYOUT_COST } else { 0.0 };
-        strength * learned.spread.distance(&a.looks, &b.looks).min(2.0) + one
-    };
-    let mut level = 1.0;
-    let mut best: Option<(f64, Vec<usize>, joint::Problem)> = None;
-    for _ in 0..LEVEL_ROUNDS {
-        let costs = (0..blocks.len()).map(|i| {
-            let own = |(c, noise): (&Candidate, &f64)| own_cost(c, wishes[i] * level) + noise;
-            tried[i].iter().zip(&noise[i]).map(own).collect()
-        });
-        let problem = joint::Problem { costs: costs.collect(), neighbours: neighbours.clone() };
-        let chosen = joint::choose(&problem, pair);
-        let built_m2: f64 =
-            (0..blocks.len()).filter(free).map(|i| tried[i][chosen[i]].laid.built_m2()).sum();
-        let off = trig::ln(wanted_m2.max(1.0) / built_m2.max(1.0));
-        if best.as_ref().is_none_or(|b| off.abs() < b.0) {
-            best = Some((off.abs(), chosen, problem));
-        }
-        if off.abs() < 0.02 {
-            break;
-        }
-        level = (level * trig::exp(off)).clamp(0.3, 3.0);
-    }
-    let Some((_, chosen, problem)) = best else { return Vec::new() };
-    (0..blocks.len())
-        .map(|i| {
-            let mut order: Vec<usize> = (0..tried[i].len()).collect();
-            let cost = |k: usize| problem.costs[i][k];
-            order.sort_by(|a, b| {
-                (*b == chosen[i])
-                    .cmp(&(*a == chosen[i]))
-                    .then(cost(*a).total_cmp(&cost(*b)))
-                    .then(a.cmp(b))
-            });
-            let skip = (choosing.alternative as usize - 1).min(order.len().saturating_sub(1));
-            if !order.is_empty() {
-                order[..=skip].rotate_right(1);
-            }
-            order
-        })
-        .collect()
-}
-
-/// What a candidate costs by itself, where a share of the block is wished to be built on.
-fn own_cost(candidate: &Candidate, wish: f64) -> f64 {
-    let slack = 0.02;
-    let off = if wish.is_finite() {
-        trig::ln((candidate.looks.coverage() + slack) / (wish + slack)).abs()
-    } else {
-        0.0
-    };
-    candidate.cost + COVERAGE_COST * off + LOSS_COST * (1.0 - candidate.kept)
-}
-
-/// What draws among the best: nothing for one, else costs whose cheapest is drawn (Gumbel).
-fn noise(count: usize, choosing: &Choosing, rng: &mut Rng) -> Vec<f64> {
-    let pick = choosing.pick as usize;
-    (0..count)
-        .map(|k| {
-            let uniform: f64 = rng.random::<f64>().clamp(1e-12, 1.0 - 1e-12);
-            match pick {
-                1 => 0.0,
-                _ if k >= pick => 1.0,
-                _ => PICK_SPREAD * trig::ln(-trig::ln(uniform)),
-            }
-        })
-        .collect()
 }

@@ -21,6 +21,11 @@ pub struct Choosing {
     /// How much neighbouring blocks are made to look alike: 1 as in the example, 0 not at all.
     #[schemars(range(min = 0.0, max = 10.0))]
     pub coherence: f64,
+    /// How far the coverage of all filled blocks together is brought to the example's, where the blocks
+    /// are of other sizes and shapes: 1 = to it, 0 = each block is built on as the example's like blocks
+    /// are, whatever that adds up to.
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub coverage: f64,
     /// Draw parks, schools and shops as often and as far apart as in the example.
     pub kinds: bool,
     /// Which example serves where: polygons with the property `example`, or a PNG image over the
@@ -68,6 +73,7 @@ impl Default for Choosing {
             alternative: 1,
             alternatives: 1,
             coherence: 1.0,
+            coverage: 1.0,
             kinds: true,
             style_map: exurb_operation::StyleMap::default(),
             style_legend: String::new(),

@@ -7,7 +7,7 @@ use exurb_match::Outline;
 use super::relief_m;
 use super::tidy::tidied;
 use crate::kerb::Kerb;
-use crate::library::{Features, OpenLand};
+use crate::library::{Features, OPEN_COVERAGE, OPEN_SHARE, OpenLand};
 use crate::outline::plain_outline;
 use crate::refine::Why;
 
@@ -28,6 +28,8 @@ pub struct Layout {
     pub features: Features,
     /// Class of open land, where that takes most of the block and next to nothing is built on it.
     pub open: Option<Arc<str>>,
+    /// Does the map say that at least half of its ground is open land or water, built on or not?
+    pub is_given_open: bool,
     /// Prevailing land use.
     pub land_use: Option<Arc<str>>,
     /// What the block is for; `None` is an ordinary one.
@@ -113,6 +115,7 @@ fn layout(
         outline,
         features,
         open: None,
+        is_given_open: false,
         land_use: block.land_use.clone(),
         kind: None,
         coverage: 0.0,
@@ -122,7 +125,9 @@ fn layout(
         things: home.things,
     };
     layout.coverage = layout.built_m2() / block.polygon.area_m2();
-    layout.open = open_class(&layout, open);
+    let given = open.share(&block.polygon).filter(|(_, share)| *share >= OPEN_SHARE);
+    layout.is_given_open = given.is_some();
+    layout.open = given.map(|(class, _)| class).filter(|_| layout.coverage <= OPEN_COVERAGE);
     layout.kind = super::kind::kind_of(&layout);
     Some(layout)
 }
@@ -157,13 +162,6 @@ impl Layout {
             ..self.clone()
         }
     }
-}
-
-/// The class of open land that takes most of the block, where next to nothing is built on it.
-fn open_class(layout: &Layout, open: &OpenLand) -> Option<Arc<str>> {
-    use crate::library::{OPEN_COVERAGE, OPEN_SHARE};
-    let share = open.share(&layout.kerb)?;
-    (share.1 >= OPEN_SHARE && layout.coverage <= OPEN_COVERAGE).then_some(share.0)
 }
 
 fn mean_height_m(footprints: &[Footprint]) -> Option<f64> {

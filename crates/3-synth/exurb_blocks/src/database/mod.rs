@@ -53,6 +53,11 @@ impl BlockDatabase {
         self.shapes.query(query, |id| serves(&self.layouts[id as usize]))
     }
 
+    /// The layout whose block is nearest by size and aspect.
+    pub fn nearest(&self, outline: &Outline) -> Option<u32> {
+        self.shapes.nearest(outline)
+    }
+
     /// The outline of a layout's block.
     pub fn outline(&self, entry: u32) -> &Outline {
         &self.shapes.entries()[entry as usize].outline

@@ -25,6 +25,7 @@ mod error;
 mod groups;
 mod guidance;
 mod label;
+mod line;
 mod params;
 mod path;
 mod rows;
@@ -48,6 +49,7 @@ pub use params::{Params, Settings};
 pub(crate) use path::Path;
 pub use synthesize::{Placement, Source};
 pub(crate) use things::things;
+pub(crate) use whole::is_whole;
 
 use crate::choice::{Learned, Ways};
 use crate::database::BlockDatabase;

@@ -117,3 +117,23 @@ fn a_floor_plan_is_laid_out_anew() {
         .sum();
     assert!((covered / (60.0 * 12.0) - 1.0).abs() < 0.1, "{covered}");
 }
+
+#[test]
+fn an_outline_that_crosses_itself_is_told_and_changes_nothing() {
+    use exurb_geom::Vec2;
+    use exurb_operation::{Run, Scope, erase};
+
+    let city = crate::test_city::grid(2, 1, Vec2::new(100.0, 70.0), crate::test_city::Style::Rows);
+    let b = city.blocks[0].polygon.bounds();
+    let bow =
+        [[b.min.x, b.min.y], [b.max.x, b.min.y], [b.min.x + 10.0, b.max.y], [b.max.x, b.max.y]];
+    let longer = [[b.min.x, b.min.y], [b.max.x, b.min.y], [b.max.x, b.max.y], [b.min.x, b.max.y]];
+    let edit = |ring: &[[f64; 2]]| {
+        let params =
+            serde_json::json!({ "block": city.blocks[0].id, "outline": { "polygon": [ring] } });
+        erase::<super::Retarget>().run(&city, &Scope::All, &[], params, &Run::new(1))
+    };
+    let message = edit(&bow).map(|_| ()).expect_err("it crosses itself").to_string();
+    assert!(message.contains("crosses or touches itself"), "{message}");
+    edit(&longer).expect("a simple outline");
+}

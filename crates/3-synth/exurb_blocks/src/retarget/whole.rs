@@ -23,8 +23,8 @@ const PLACES: usize = 48;
 const STRETCH: (f64, f64) = (0.75, 1.33);
 
 /// Does a layout consist of few large buildings, large beside the block, too?
-pub fn is_whole(block_m2: f64, polygons: &[Polygon]) -> bool {
-    let areas = || polygons.iter().map(Polygon::area_m2);
+pub fn is_whole(block_m2: f64, polygons: &[&Polygon]) -> bool {
+    let areas = || polygons.iter().map(|p| p.area_m2());
     let large: Vec<f64> = areas().filter(|a| *a >= LARGE_M2.max(0.04 * block_m2)).collect();
     let built: f64 = areas().sum();
     (1..=FEW).contains(&large.len()) && large.iter().sum::<f64>() >= LARGE_SHARE * built
