@@ -177,3 +177,19 @@ fn the_geojson_files_of_one_place_are_imported_together() {
     }
     exurb(folder.path(), &["import", &files[0], "c.gpkg", "-o", "d.gpkg"]).ends(2).says("c.gpkg");
 }
+
+#[test]
+fn an_import_joins_carriageways_when_asked() {
+    let folder = tempdir().unwrap();
+    let map = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../../data/saltlake.osm.pbf")
+        .display()
+        .to_string();
+    let km = |args: &[&str]| {
+        let args = [&["import", &map, "-o", "c.gpkg", "--json"], args].concat();
+        let report = exurb(folder.path(), &args).ends(0).json();
+        report["streets"]["km"].as_f64().unwrap()
+    };
+    let (whole, simple) = (km(&[]), km(&["--simplify"]));
+    assert!(simple < 0.99 * whole && simple > 0.5 * whole, "{whole} {simple}");
+}
