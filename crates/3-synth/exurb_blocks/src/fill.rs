@@ -58,7 +58,6 @@ pub fn fill(
     learned: &Learned,
     choosing: &Choosing,
     ways: &Ways,
-    limits: Limits,
     run: &Run,
 ) -> Result<Filled, Failure> {
     let blocks = blocks_of(city);
@@ -66,7 +65,7 @@ pub fn fill(
     let wanted: Vec<bool> =
         blocks.iter().map(|b| b.class == BlockClass::Block && scoped.holds(b.id)).collect();
     run.phase("choosing layouts");
-    let choices = choose(city, &blocks, &wanted, learned, choosing, ways, limits, run)?;
+    let choices = choose(city, &blocks, &wanted, learned, choosing, ways, run)?;
     let along = AlongStreets::of(city, &blocks, choosing.pavement);
     let mut left = Vec::new();
     let mut tally: BTreeMap<String, u64> = BTreeMap::new();
@@ -75,7 +74,9 @@ pub fn fill(
         .par_iter()
         .zip(&choices)
         .zip(&along.of_block)
-        .map(|((block, choice), along)| filling(block, choice, along, learned, choosing, limits))
+        .map(|((block, choice), along)| {
+            filling(block, choice, along, learned, choosing, ways.limits)
+        })
         .collect();
     for ((block, choice), made) in blocks.iter().zip(&choices).zip(made) {
         for (what, count) in counted(choice, made.is_some()) {

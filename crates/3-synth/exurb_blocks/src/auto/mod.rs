@@ -56,9 +56,9 @@ impl Operation for Auto {
             retarget: true,
             deviation_m: params.alike,
             settings: Settings::default(),
+            limits: Limits { most_cost: params.most_cost, least_kept: params.least_kept },
         };
-        let limits = Limits { most_cost: params.most_cost, least_kept: params.least_kept };
-        let filled = fill(city, scope, &learned.layouts, &params.choosing, &ways, limits, run)?;
+        let filled = fill(city, scope, &learned.layouts, &params.choosing, &ways, run)?;
         if filled.left.is_empty() {
             return Ok(filled.edit);
         }

@@ -7,7 +7,6 @@ use exurb_match::{Match, Outline, align};
 use super::descriptor::Descriptor;
 use super::{Choosing, Learned, Ways};
 use crate::database::Layout;
-use crate::fill::Limits;
 use crate::infill::{Room, add_free, infill};
 use crate::kerb::Kerb;
 use crate::lay::{Laid, Spacing, lay};
@@ -131,7 +130,6 @@ pub fn tried(
     learned: &Learned,
     choosing: &Choosing,
     ways: &Ways,
-    limits: Limits,
     open: &OpenNearby<'_>,
 ) -> Candidate {
     let layout = &learned.database.layouts[found.entry as usize];
@@ -158,7 +156,7 @@ pub fn tried(
         if as_whole { (Way::Transferred, transferred()) } else { (Way::Retargeted, anew()) };
     // A layout that lost too much is made good before it is given up.
     for least in [USUAL, ANY] {
-        if !is_same && kept(&laid) < limits.least_kept {
+        if !is_same && kept(&laid) < ways.limits.least_kept {
             let goal_m2 = layout.coverage * site.block.polygon.area_m2();
             let room = Room { ground: &ground, open, spacing, goal_m2, shifts: COARSE, least };
             infill(&mut laid, layout, &motion, &room);

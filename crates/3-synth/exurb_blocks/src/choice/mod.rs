@@ -51,6 +51,8 @@ pub struct Ways {
     pub deviation_m: f64,
     /// How layouts are laid out anew.
     pub settings: Settings,
+    /// When a layout does not suit a block.
+    pub limits: Limits,
 }
 
 /// What was chosen for a block.
@@ -72,7 +74,6 @@ pub fn choose(
     learned: &Learned,
     choosing: &Choosing,
     ways: &Ways,
-    limits: Limits,
     run: &Run,
 ) -> Result<Vec<Choice>, Failure> {
     let styles = Styles::of(
@@ -141,9 +142,7 @@ pub fn choose(
                 ),
             };
             let tries = found.iter().take(choosing.tries.max(choosing.alternatives) as usize);
-            Ok(tries
-                .map(|m| candidate::tried(site, m, learned, choosing, ways, limits, &near))
-                .collect())
+            Ok(tries.map(|m| candidate::tried(site, m, learned, choosing, ways, &near)).collect())
         })
         .collect();
     let mut tried: Vec<Vec<Candidate>> = tried.into_iter().collect::<Result<_, _>>()?;
@@ -155,7 +154,7 @@ pub fn choose(
         total_m2,
         learned,
         choosing,
-        limits,
+        limits: ways.limits,
     };
     let chosen = together.chosen(&tried, &around.places, run);
     together.fill_up(&mut tried, &chosen, &sites, &open);

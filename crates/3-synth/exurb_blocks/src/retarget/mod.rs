@@ -100,8 +100,9 @@ impl Operation for Retarget {
             retarget: true,
             deviation_m: 0.0,
             settings: params.settings.clone(),
+            limits: Limits::NONE,
         };
-        Ok(fill(city, scope, learned, &params.choosing, &ways, Limits::NONE, run)?.edit)
+        Ok(fill(city, scope, learned, &params.choosing, &ways, run)?.edit)
     }
 }
 

@@ -56,8 +56,9 @@ impl Operation for Transfer {
             retarget: false,
             deviation_m: f64::INFINITY,
             settings: Settings::default(),
+            limits: Limits::NONE,
         };
-        Ok(fill(city, scope, learned, &params.choosing, &ways, Limits::NONE, run)?.edit)
+        Ok(fill(city, scope, learned, &params.choosing, &ways, run)?.edit)
     }
 }
 
