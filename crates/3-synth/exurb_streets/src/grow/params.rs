@@ -39,10 +39,12 @@ pub struct Params {
     /// A map of some drawn streets: growth learns from the surroundings of the place of the examples
     /// that is most like them, and begins with it, turned as they are, where they lie if that is in
     /// the target. Replaces `start`.
+    #[schemars(extend("x-value-name" = "SKETCH.geojson"))]
     pub like: LinesFile,
     /// A GeoJSON file of areas: `use` and `example`, or `examples` with weights, say what each grows
     /// like; without examples, the one whose own ground, and streets where `density` says how many
     /// km/km², are most like the area's. `starts` are places as in `start`.
+    #[schemars(extend("x-value-name" = "AREAS.geojson"))]
     pub areas: DomainsFile,
     /// Splits the target by height and slope into parts that each grow like the example whose own
     /// ground is most like theirs.
