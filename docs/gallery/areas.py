@@ -64,8 +64,8 @@ def paint(name, width, height, color):
 
 # A plain that is nowhere in particular.
 PLAIN = Place(10.0, 50.0)
-SAN_FRANCISCO = Place(-122.43, 37.775)
-WUHAN = Place(114.28, 30.59)
+SALT_LAKE_CITY = Place(-111.8728, 40.7439)
+PORTO_ALEGRE = Place(-51.2049, -30.0451)
 
 
 def plain():
@@ -121,33 +121,37 @@ def content():
 
 
 def redevelopment():
-    """Figure 14: a part of San Francisco, step by step."""
-    at = SAN_FRANCISCO
-    write("sf_area", at.polygon(box(-1500, -1400, 1500, 1400)))
-    write("sf_top", at.polygon(box(-1450, 100, 1450, 1350)))
-    write("sf_bottom", at.polygon(box(-1450, -1350, 1450, -100)))
-    write("sf_plazas", at.polygon(box(-650, -500, 650, 500)))
-    write("sf_park", at.polygon(disc(850, -750, 330)))
-    write("sf_park_area", at.polygon(disc(850, -750, 290), use="park"))
+    """Figure 14: a part of Salt Lake City, step by step."""
+    at = SALT_LAKE_CITY
+    write("salt_area", at.polygon(box(-1500, -1400, 1500, 1400)))
+    write("salt_top", at.polygon(box(-1450, 100, 1450, 1350)))
+    write("salt_bottom", at.polygon(box(-1450, -1350, 1450, -100)))
+    write("salt_plazas", at.polygon(box(-650, -500, 650, 500)))
+    write("salt_park", at.polygon(disc(850, -750, 330)))
+    write("salt_park_area", at.polygon(disc(850, -750, 290), use="park"))
     paths = [
         at.line([(540, -860), (760, -760), (900, -600), (1010, -470)], highway="residential"),
         at.line([(560, -620), (800, -720), (950, -880), (1080, -960)], highway="residential"),
     ]
-    write("sf_paths", *paths)
+    write("salt_paths", *paths)
 
 
 def growing_city():
-    """Figure 1: Wuhan grows a quarter, a corner of it is replaced, more is put in."""
-    at = WUHAN
-    write("wuhan_area", at.polygon(box(-1700, -1500, 1700, 1500)))
-    write("wuhan_corner", at.polygon(box(500, 300, 1650, 1450)))
-    write("wuhan_plazas", at.polygon(disc(-700, -500, 600)))
+    """Figure 1: Porto Alegre grows a quarter, a corner of it is replaced, more is put in."""
+    at = PORTO_ALEGRE
+    write("porto_area", at.polygon(box(-1700, -1500, 1700, 1500)))
+    write("porto_corner", at.polygon(box(500, 300, 1650, 1450)))
+    write("porto_plazas", at.polygon(disc(-700, -500, 600)))
 
 
 def guides():
-    """Points for the commands of figure 11 and 12, to be copied into gallery.toml."""
+    """Points for the commands of figures 1, 11, 12 and 14, to be copied into gallery.toml."""
     for x in (-1300, 1300):
         print("start", x, PLAIN.degrees((x, 0)))
+    for x in (-1050, 1050):
+        print("quarter", PORTO_ALEGRE.degrees((x, 0)))
+    for x, y in [(-970, 730), (970, 730), (-530, -330), (0, 110), (530, 330)]:
+        print("anew", SALT_LAKE_CITY.degrees((x, y)))
     for x, y in [(-600, -1900), (500, -900), (-500, 0), (500, 900), (-300, 1900)]:
         print("guide", PLAIN.degrees((x, y)))
 

@@ -227,7 +227,13 @@ impl Ground {
     pub fn may_remove(&self, streets: &StreetGraph, id: u32) -> bool {
         let edge = streets.edge(EdgeId(id));
         let middle = polyline::point_at(&edge.line_m(), edge.length_m() / 2.0);
-        let is_inside = self.around.is_none() || self.target.contains(GridPoint::round(middle));
+        let is_inside = self.around.as_ref().is_none_or(|around| {
+            let is_around = || around.streets.edges().any(|(_, other)| other.line() == edge.line());
+            match self.target.boundary_distance_m(middle) < ON_BORDER_M {
+                true => !is_around(),
+                false => self.target.contains(GridPoint::round(middle)),
+            }
+        });
         is_inside && !is_given(&edge.data)
     }
 

@@ -34,6 +34,9 @@ const REACH_M: f64 = 250.0;
 /// Streets that no piece holds keep this many times the example's spacing from others.
 const SPACING: f64 = 1.2;
 
+/// Streets leave the border of a part of a city at this angle at least, in radians.
+const RIM_RAD: f64 = 0.25;
+
 /// Growth of one layer.
 pub struct Growth<'a> {
     /// The network grown into.
@@ -414,15 +417,18 @@ impl<'a> Growth<'a> {
     }
 
     /// Does a line from a node of the cell's border begin outside the cell, where the cell sees no
-    /// streets?
+    /// streets, or along the border of a part of a city, where both sides would lay one?
     fn leaves_cell(&self, node: NodeId, line: &[Vec2]) -> bool {
-        let on_border = self
-            .net
-            .graph
-            .darts(node)
-            .iter()
-            .any(|d| self.net.graph.edge(d.edge()).data.is_fixed());
-        on_border && !self.inside.contains(GridPoint::round(polyline::point_at(line, 0.5)))
+        let graph = &self.net.graph;
+        let darts = graph.darts(node);
+        let on_border = darts.iter().any(|d| graph.edge(d.edge()).data.is_fixed());
+        let leaving = polyline::point_at(line, 15.0) - line[0];
+        let along_rim = darts.iter().any(|d| {
+            graph.edge(d.edge()).data.is_rim()
+                && trig::angle_between(graph.direction(*d, 15.0), leaving) < RIM_RAD
+        });
+        along_rim
+            || (on_border && !self.inside.contains(GridPoint::round(polyline::point_at(line, 0.5))))
     }
 
     /// Does a line keep so far from other streets that no block becomes narrower than the example's?

@@ -177,6 +177,31 @@ fn a_part_grown_anew_leaves_the_rest_as_it_is_and_joins_it() {
 }
 
 #[test]
+fn no_street_lies_along_the_border_of_a_part_grown_anew() {
+    // The border lies as the example's streets do, and cuts the city's streets slantwise.
+    let turned = |p: &Vec2| trig::unit(0.14).rotate(*p);
+    let lines = grid(16);
+    let lines = lines.streets.edges().map(|(_, e)| {
+        let line: Vec<Vec2> = e.line_m().iter().map(turned).collect();
+        (exurb_geom::polyline::round(&line), e.data.clone())
+    });
+    let city = city_of(street_graph::from_lines(lines));
+    let middle = city.target.bounds().center();
+    let examples = [Example::new(grid(12))];
+    for seed in 1..9 {
+        let area = square(middle, 600.0 + 40.0 * seed as f64);
+        let outcome = erase::<super::Grow>()
+            .run(&city, &Scope::Inside(area.clone()), &examples, params(0.5), &Run::new(seed))
+            .expect("grows");
+        assert_lawful(&outcome.city);
+        for (_, edge) in outcome.city.streets.edges() {
+            let points = exurb_geom::polyline::resample(&edge.line_m(), 5.0);
+            assert!(points.iter().any(|p| area.boundary_distance_m(*p) > 0.5), "seed {seed}");
+        }
+    }
+}
+
+#[test]
 fn given_streets_stay_and_are_joined() {
     let sketched = |class| Street {
         class,

@@ -180,6 +180,10 @@ impl Network {
                 None => Some((line.to_vec(), Landing::Free)),
             };
         };
+        // Blocked from its first point on.
+        if contact.along_m < 0.001 {
+            return None;
+        }
         if self.graph.edge(contact.edge).data.is_rim() {
             let cut = polyline::part(line, 0.0, contact.along_m);
             if let Some(gate) = self.gate_near(contact.at) {
