@@ -94,7 +94,7 @@ const ROWS: [Row; 10] = [
         what: "redevelopment (figure 14), the whole network",
         km: 342.0,
         seconds: 130.0,
-        arguments: "{osm}/san_francisco.osm.pbf --scope {streets}/sf_area.geojson \
+        arguments: "{osm}/salt_lake_city.osm.pbf --scope {streets}/salt_area.geojson \
                     --example {osm}/canberra.osm.pbf --example {osm}/tel_aviv.osm.pbf",
     },
 ];
