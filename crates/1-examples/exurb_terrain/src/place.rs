@@ -9,6 +9,8 @@ use crate::{Dem, Error};
 
 /// Most posts of a terrain: finer rasters are averaged over larger cells.
 const MOST_POSTS: f64 = 16e6;
+/// No height map has pixels smaller than this, in metres.
+const LEAST_PIXEL_M: f64 = 0.001;
 /// Finer cells say nothing of a city.
 const LEAST_CELL_M: f64 = 0.5;
 /// Nearer than this many pixels to a pixel's middle, its height is taken as it is.
@@ -30,6 +32,10 @@ impl Dem {
         let error = |source| Error::Terrain { file: self.file.clone(), source };
         let map = Mapping { dem: self, frame, bounds };
         let pixel_m = map.pixel_m(bounds).ok_or_else(|| self.elsewhere(frame, bounds))?;
+        if pixel_m < LEAST_PIXEL_M {
+            let what = format!("has pixels of {pixel_m:e} m; what it says of its place is wrong");
+            return Err(Error::content(&self.file, what));
+        }
         let (first, cell_m) = match (cell_m, map.aligned(pixel_m)) {
             (Some(cell_m), _) => (bounds.min, cell_m),
             (None, Some(first)) => (first, pixel_m),

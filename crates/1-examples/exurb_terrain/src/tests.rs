@@ -254,6 +254,16 @@ fn a_city_elsewhere_is_told_where_the_heights_are() {
 }
 
 #[test]
+fn pixels_without_size_are_an_error_and_no_endless_work() {
+    let text = "ncols 3\nnrows 2\nxllcorner 7\nyllcorner 43\ncellsize 1e-12\n1 2 3\n4 5 6\n";
+    let dem = read_bytes(text.as_bytes(), "a.asc", Said::default(), &Options::default()).unwrap();
+    let frame = Frame::new(LonLat { lon: 7.0, lat: 43.0 }).unwrap();
+    let bounds = Bounds { min: Vec2::splat(-2000.0), max: Vec2::splat(2000.0) };
+    let error = dem.onto(&frame, bounds, None).unwrap_err().to_string();
+    assert!(error.contains("`a.asc` has pixels of"), "{error}");
+}
+
+#[test]
 fn pixels_finer_than_the_cells_are_averaged() {
     // Chequered square metres: the mean of black and white is all that a cell can say.
     let columns = 500;

@@ -172,11 +172,34 @@ pub(super) fn foreign_layers(db: &Connection) -> rusqlite::Result<Vec<ForeignLay
     layers.collect()
 }
 
+/// Are all column names UTF-8? The library panics where they are not.
+fn has_readable_names(db: &Connection, table: &str) -> rusqlite::Result<bool> {
+    let mut select = db.prepare("SELECT name FROM pragma_table_xinfo(?)")?;
+    let mut rows = select.query([table])?;
+    while let Some(row) = rows.next()? {
+        let is_text = match row.get_ref(0)? {
+            ValueRef::Text(name) => std::str::from_utf8(name).is_ok(),
+            _ => false,
+        };
+        if !is_text {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
 fn read_layer(db: &Connection, layer: &ForeignLayer, into: &mut Gathering) -> Result<(), Error> {
     let file = into.file.clone();
     let database = |source| Error::Database { file: file.clone(), source };
     let sql = format!("SELECT * FROM {}", quoted(&layer.table));
     let mut select = db.prepare(&sql).map_err(database)?;
+    if !has_readable_names(db, &layer.table).map_err(database)? {
+        return Err(Error::Content {
+            file: file.clone(),
+            place: format!("layer `{}`", layer.table),
+            what: "the name of a column is no text; export it anew".to_owned(),
+        });
+    }
     let names: Vec<String> = select.column_names().map(str::to_owned).collect();
     let Some(at) = names.iter().position(|n| n.eq_ignore_ascii_case(&layer.geometry)) else {
         return Err(Error::Content {

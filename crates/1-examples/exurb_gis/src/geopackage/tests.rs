@@ -230,6 +230,20 @@ fn foreign(path: &Path, srs_id: i32, definition: &str, at: [f64; 2]) {
 }
 
 #[test]
+fn a_column_whose_name_is_no_text_is_an_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.gpkg");
+    foreign(&path, 5514, "", [-743_011.0, -1_043_011.0]);
+    let mut bytes = std::fs::read(&path).unwrap();
+    let schema = b"shape BLOB, fclass TEXT";
+    let at = bytes.windows(schema.len()).position(|w| w == schema).unwrap() + 12;
+    bytes[at] = 0xE9;
+    std::fs::write(&path, bytes).unwrap();
+    let error = read_geopackage(&path, &Default::default()).unwrap_err().to_string();
+    assert!(error.contains("the name of a column is no text"), "{error}");
+}
+
+#[test]
 fn lines_of_other_files_become_streets_where_they_lie() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.gpkg");
