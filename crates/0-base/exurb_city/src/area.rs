@@ -15,6 +15,9 @@ pub struct Area {
     pub class: Arc<str>,
 }
 
+/// Land uses that streets leave alone when they grow.
+pub const WITHOUT_STREETS: [&str; 2] = ["park", "cemetery"];
+
 /// Is this land use kept free of buildings?
 pub fn is_open(class: &str) -> bool {
     matches!(

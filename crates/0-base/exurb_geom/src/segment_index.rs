@@ -162,6 +162,24 @@ mod tests {
     use super::*;
 
     #[test]
+    fn the_nearest_segment_is_that_of_all() {
+        let at = |i: i32| Vec2::new(f64::from(i * 7919 % 1999), f64::from(i * 6047 % 1801));
+        let lines: Vec<[Vec2; 2]> =
+            (0..60).map(|i| [at(i), at(i) + Vec2::new(f64::from(i % 9) * 12.0, 31.0)]).collect();
+        let mut index = SegmentIndex::new(40.0);
+        lines.iter().zip(0..).for_each(|(line, id)| index.insert_line(id, line));
+        let mut far = 0;
+        for p in (0..500).map(|i| at(i * 31 + 5) - 100.0) {
+            let distance = |line: &[Vec2; 2]| polyline::distance(line, p);
+            let least = lines.iter().map(distance).fold(f64::INFINITY, f64::min);
+            let expected = (least <= 150.0).then_some(least);
+            assert_eq!(index.nearest_m(p, 150.0), expected, "{p}");
+            far += usize::from(expected.is_none());
+        }
+        assert!((50..450).contains(&far), "{far} of 500 are far from all");
+    }
+
+    #[test]
     fn a_long_diagonal_is_found_along_its_line_and_forgotten() {
         let mut index = SegmentIndex::new(10.0);
         let line = [Vec2::new(-55.0, -31.0), Vec2::new(120.0, 77.0), Vec2::new(120.0, 300.0)];

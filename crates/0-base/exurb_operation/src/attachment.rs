@@ -1,5 +1,37 @@
 use exurb_geom::{GridPoint, Polygon};
 
+/// A parameter that names a file: none by default, and in the schema a string with the kind of file.
+macro_rules! names_a_file {
+    ($($file:ident is $kind:literal;)*) => {$(
+        impl Default for $file {
+            fn default() -> Self {
+                Self::File(String::new())
+            }
+        }
+
+        impl schemars::JsonSchema for $file {
+            fn schema_name() -> std::borrow::Cow<'static, str> {
+                stringify!($file).into()
+            }
+
+            fn inline_schema() -> bool {
+                true
+            }
+
+            fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+                schemars::json_schema!({ "type": "string", "x-file": $kind })
+            }
+        }
+    )*};
+}
+
+names_a_file! {
+    PolygonFile is "polygon";
+    StyleMap is "style-map";
+    DomainsFile is "domains";
+    LinesFile is "lines";
+}
+
 /// A polygon that a parameter takes from a file. Recipes and commands name the file; whoever runs the
 /// operation reads it first, since operations open no files.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -12,26 +44,6 @@ pub enum PolygonFile {
         /// The rings, open or closed.
         polygon: Vec<Vec<[f64; 2]>>,
     },
-}
-
-impl Default for PolygonFile {
-    fn default() -> Self {
-        Self::File(String::new())
-    }
-}
-
-impl schemars::JsonSchema for PolygonFile {
-    fn schema_name() -> std::borrow::Cow<'static, str> {
-        "PolygonFile".into()
-    }
-
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
-        schemars::json_schema!({ "type": "string", "x-file": "polygon" })
-    }
 }
 
 impl PolygonFile {
@@ -77,26 +89,6 @@ pub struct StyleArea {
     pub example: String,
     /// The area: rings in metres in the city's frame, the outer one first.
     pub polygon: Vec<Vec<[f64; 2]>>,
-}
-
-impl Default for StyleMap {
-    fn default() -> Self {
-        Self::File(String::new())
-    }
-}
-
-impl schemars::JsonSchema for StyleMap {
-    fn schema_name() -> std::borrow::Cow<'static, str> {
-        "StyleMap".into()
-    }
-
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
-        schemars::json_schema!({ "type": "string", "x-file": "style-map" })
-    }
 }
 
 impl StyleMap {
@@ -168,26 +160,6 @@ pub struct Lines {
     pub lines: Vec<Vec<[f64; 2]>>,
 }
 
-impl Default for LinesFile {
-    fn default() -> Self {
-        Self::File(String::new())
-    }
-}
-
-impl schemars::JsonSchema for LinesFile {
-    fn schema_name() -> std::borrow::Cow<'static, str> {
-        "LinesFile".into()
-    }
-
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
-        schemars::json_schema!({ "type": "string", "x-file": "lines" })
-    }
-}
-
 impl LinesFile {
     /// The lines; `None` where none were read.
     pub fn lines(&self) -> Option<&Lines> {
@@ -202,26 +174,6 @@ impl Domain {
     /// Its outline; `None` where it has no area.
     pub fn polygon(&self) -> Option<Polygon> {
         of_rings(&self.polygon)
-    }
-}
-
-impl Default for DomainsFile {
-    fn default() -> Self {
-        Self::File(String::new())
-    }
-}
-
-impl schemars::JsonSchema for DomainsFile {
-    fn schema_name() -> std::borrow::Cow<'static, str> {
-        "DomainsFile".into()
-    }
-
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
-        schemars::json_schema!({ "type": "string", "x-file": "domains" })
     }
 }
 

@@ -7,10 +7,10 @@
 //! much as it should be. Neighbours of one pose keep their places to each other, as pieces of a texture
 //! do, but each building is turned a little about its middle, so that it lies to the kerb as it lay at home.
 
-use std::collections::BTreeMap;
-
 use exurb_city::Building;
 use exurb_geom::{Bounds, BoxGrid, GridPoint, Polygon, Rigid, Vec2, overlap, overlay, trig};
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{AABB, RTree};
 
 use crate::database::{Layout, is_civic};
 use crate::kerb::Kerb;
@@ -140,48 +140,36 @@ fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
     values.get((values.len() as f64 * share) as usize).copied().unwrap_or(0.0)
 }
 
-/// What stands already, by square cells.
+/// What stands already, by its boxes.
 #[derive(Default)]
 struct Bodies {
-    all: Vec<(Bounds, Polygon)>,
-    cells: BTreeMap<(i32, i32), Vec<usize>>,
+    all: Vec<Polygon>,
+    boxes: RTree<GeomWithData<Rectangle<[f64; 2]>, usize>>,
 }
-
-/// Side of a cell in metres.
-const CELL_M: f64 = 25.0;
 
 impl Bodies {
     fn add(&mut self, polygon: Polygon) {
-        let bounds = polygon.bounds();
-        for cell in cells(bounds) {
-            self.cells.entry(cell).or_default().push(self.all.len());
-        }
-        self.all.push((bounds, polygon));
+        let Bounds { min, max } = polygon.bounds();
+        let around = Rectangle::from_corners([min.x, min.y], [max.x, max.y]);
+        self.boxes.insert(GeomWithData::new(around, self.all.len()));
+        self.all.push(polygon);
     }
 
     /// Does `p` lie in one of them?
     fn hold(&self, p: Vec2) -> bool {
         let at = GridPoint::round(p);
-        let here = cells(Bounds { min: p, max: p }).filter_map(|cell| self.cells.get(&cell));
-        here.flatten().any(|i| self.all[*i].0.contains(p) && self.all[*i].1.contains(at))
+        self.near(Bounds { min: p, max: p }).into_iter().any(|polygon| polygon.contains(at))
     }
 
-    /// Those whose boxes meet a box, in order.
+    /// Those whose boxes meet a box, in the order they came in.
     fn near(&self, bounds: Bounds) -> Vec<&Polygon> {
-        let here = cells(bounds).filter_map(|cell| self.cells.get(&cell)).flatten();
+        let Bounds { min, max } = bounds;
+        let asked = AABB::from_corners([min.x, min.y], [max.x, max.y]);
         let mut found: Vec<usize> =
-            here.copied().filter(|i| self.all[*i].0.intersects(bounds)).collect();
+            self.boxes.locate_in_envelope_intersecting(&asked).map(|b| b.data).collect();
         found.sort_unstable();
-        found.dedup();
-        found.into_iter().map(|i| &self.all[i].1).collect()
+        found.into_iter().map(|i| &self.all[i]).collect()
     }
-}
-
-fn cells(bounds: Bounds) -> impl Iterator<Item = (i32, i32)> {
-    let cell = |v: f64| (v / CELL_M).floor() as i32;
-    let (low, high) = (bounds.min, bounds.max);
-    let (rows, columns) = (cell(low.y)..=cell(high.y), cell(low.x)..=cell(high.x));
-    rows.flat_map(move |y| columns.clone().map(move |x| (x, y)))
 }
 
 /// Which footprints share walls with others.

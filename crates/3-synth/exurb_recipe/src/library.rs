@@ -3,9 +3,11 @@
 //! Source: Nishida et al. 2015, section 3: every part of the target takes after examples of like
 //! terrain and density. There a user picks them; here the first step's method does.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use exurb_city::City;
+use exurb_geom::Polygon;
 use exurb_operation::{Example, Run};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -56,13 +58,14 @@ impl Library {
 }
 
 impl Recipe {
-    /// This recipe with the examples of its library that serve for `city`, in place of the library, and
-    /// all examples. Maps of the library that cannot be read or hold no streets are left out with a
+    /// This recipe with the examples of its library that serve for `city` where the first step works, in
+    /// place of the library, and all examples. Maps of the library that cannot be read or hold no streets are left out with a
     /// warning.
     pub(crate) fn with_library(
         &self,
         mut examples: Vec<Example>,
         city: &City,
+        changed: &[Polygon],
         folder: &Path,
         registry: &Registry,
         run: &Run,
@@ -95,10 +98,13 @@ impl Recipe {
             }
         }
         let operation = registry.find(&step.op).map_err(Error::Recipe)?;
-        let scope = run::scope(&step.scope, city, folder, run)?;
         let params = attached::read(&step.params, &operation.schema(), &city.frame, folder, run)?;
         let offered: Vec<Example> = known.iter().map(|(_, example, _)| example.clone()).collect();
-        let chosen = operation.choose(city, &scope, &offered, Value::Object(params), run)?;
+        let mut chosen = BTreeSet::new();
+        for scope in run::scopes(&step.scope, city, changed, folder, run)? {
+            let params = Value::Object(params.clone());
+            chosen.extend(operation.choose(city, &scope, &offered, params, run)?);
+        }
         for i in chosen {
             let (source, example, aside) = &known[i];
             for warning in aside.take_warnings() {

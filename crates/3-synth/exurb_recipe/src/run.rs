@@ -115,16 +115,14 @@ impl Recipe {
     ) -> Result<Made, Error> {
         let Inputs { mut city, changed, examples, read_seconds } = inputs;
         let started = Instant::now();
-        let (recipe, examples) = self.with_library(examples, &city, folder, registry, run)?;
+        let (recipe, examples) =
+            self.with_library(examples, &city, &changed, folder, registry, run)?;
         let read = read_seconds + started.elapsed().as_secs_f64();
         let history = city.metadata.recipe.clone();
         let mut seconds = Seconds { read, ..Seconds::default() };
         for step in &recipe.steps {
             let operation = registry.find(&step.op).map_err(Error::Recipe)?;
-            let scopes = match &step.scope {
-                Within::Changed => changed.iter().cloned().map(Scope::Inside).collect(),
-                within => vec![scope(within, &city, folder, run)?],
-            };
+            let scopes = scopes(&step.scope, &city, &changed, folder, run)?;
             let chosen = recipe.choose(step, &city, &examples);
             run.phase(&step.op);
             let run = run.seeded(step.seed.unwrap_or(recipe.seed));
@@ -175,19 +173,21 @@ fn changed_ground(old: &City, new: &City, run: &Run) -> Result<Vec<Polygon>, Err
     Ok(parts)
 }
 
-/// Where a step may change the city.
-pub(crate) fn scope(
+/// Where a step may change the city: it works on one part after the other.
+pub(crate) fn scopes(
     within: &Within,
     city: &City,
+    changed: &[Polygon],
     folder: &Path,
     run: &Run,
-) -> Result<Scope, Error> {
+) -> Result<Vec<Scope>, Error> {
     Ok(match within {
-        Within::All => Scope::All,
-        Within::Blocks(blocks) => Scope::Blocks(blocks.clone()),
-        // Nothing has changed before the first step.
-        Within::Changed => Scope::All,
-        Within::File(file) => Scope::Inside(target::read_in_frame(file, &city.frame, folder, run)?),
+        Within::All => vec![Scope::All],
+        Within::Changed => changed.iter().cloned().map(Scope::Inside).collect(),
+        Within::Blocks(blocks) => vec![Scope::Blocks(blocks.clone())],
+        Within::File(file) => {
+            vec![Scope::Inside(target::read_in_frame(file, &city.frame, folder, run)?)]
+        }
     })
 }
 

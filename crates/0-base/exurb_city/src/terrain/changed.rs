@@ -1,9 +1,10 @@
 //! Where two grounds of one city differ.
 
-use exurb_geom::{GridPoint, Polygon, contour, overlay};
+use exurb_geom::{Bounds, GridPoint, Polygon, contour, overlay};
 
 use super::{Terrain, TerrainError};
-use crate::{Area, City, Land};
+use crate::area::WITHOUT_STREETS;
+use crate::{City, Land};
 
 /// Places are compared this far apart, in metres.
 const STEP_M: f64 = 25.0;
@@ -18,12 +19,8 @@ const LEAST_M2: f64 = 10_000.0;
 /// O(area).
 pub fn changed(old: &City, new: &City) -> Result<Vec<Polygon>, TerrainError> {
     let (before, after) = (Land::of(old), Land::of(new));
-    let parks = |city: &City| {
-        let parks = city.land_use.iter().filter(|area| *area.class == *"park");
-        parks.map(|area: &Area| (area.polygon.bounds(), area.polygon.clone())).collect::<Vec<_>>()
-    };
     let (parks_before, parks_after) = (parks(old), parks(new));
-    let is_park = |parks: &[(exurb_geom::Bounds, Polygon)], p| {
+    let is_park = |parks: &[(Bounds, &Polygon)], p| {
         let at = GridPoint::round(p);
         parks.iter().any(|(bounds, park)| bounds.contains(p) && park.contains(at))
     };
@@ -54,6 +51,12 @@ pub fn changed(old: &City, new: &City) -> Result<Vec<Polygon>, TerrainError> {
     Ok(large.filter_map(|part| without_small_holes(&part)).collect())
 }
 
+/// Ground that streets leave alone.
+fn parks(city: &City) -> Vec<(Bounds, &Polygon)> {
+    let parks = city.land_use.iter().filter(|area| WITHOUT_STREETS.contains(&&*area.class));
+    parks.map(|area| (area.polygon.bounds(), &area.polygon)).collect()
+}
+
 fn without_small_holes(part: &Polygon) -> Option<Polygon> {
     let is_large = |hole: &&Vec<GridPoint>| {
         let hole = Polygon::new((*hole).clone(), Vec::new());
@@ -68,6 +71,7 @@ mod tests {
     use exurb_geom::{Frame, Vec2};
 
     use super::*;
+    use crate::Area;
 
     fn city(height_m: impl Fn(Vec2) -> f64) -> City {
         let corner = GridPoint::m(1000.0, 1000.0);

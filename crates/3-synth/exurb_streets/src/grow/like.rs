@@ -134,18 +134,7 @@ impl Fragment {
         }
         let nodes: Vec<Vec2> = streets.nodes().map(|(_, n)| n.at.to_m()).collect();
         let middle = nodes.iter().copied().sum::<Vec2>() / nodes.len() as f64;
-        // The anchor: the junction of most streets, of these the one nearest to the middle.
-        let anchor = streets
-            .nodes()
-            .max_by(|(a, p), (b, q)| {
-                let off = |n: GridPoint| n.to_m().distance(middle);
-                let degrees = streets.degree(*a).min(4).cmp(&streets.degree(*b).min(4));
-                degrees.then(off(q.at).total_cmp(&off(p.at))).then(b.cmp(a))
-            })
-            .map(|(id, _)| id);
-        let Some(anchor) = anchor.filter(|id| streets.degree(*id) >= 3) else {
-            return Err(Error::Like("holds no junction of three streets; draw one".into()));
-        };
+        let anchor = anchor(&streets, middle)?;
         let center = streets.node(anchor).at.to_m();
         let reach_m = nodes.iter().map(|p| p.distance(center)).fold(0.0, f64::max);
         // Its outer ends are where the drawing ends, not dead ends.
@@ -250,9 +239,7 @@ impl Fragment {
     ) -> Option<Laid> {
         let center = graph.node(junction).at.to_m();
         let bounds = Bounds { min: center, max: center }.grown(self.reach_m);
-        let mut ids = index.ids(bounds);
-        ids.sort_unstable();
-        ids.dedup();
+        let ids = index.ids(bounds);
         let points: Vec<Vec2> = ids
             .iter()
             .flat_map(|id| polyline::resample(&graph.edge(EdgeId(*id)).line_m(), STEP_M))
@@ -323,12 +310,10 @@ impl Around {
     fn of(graph: &StreetGraph, center: Vec2, reach_m: f64, index: Option<&SegmentIndex>) -> Self {
         let is_near = |p: GridPoint| p.to_m().distance(center) <= reach_m + 0.01;
         let bounds = Bounds { min: center, max: center }.grown(reach_m);
-        let mut ids = match index {
+        let ids = match index {
             Some(index) => index.ids(bounds),
             None => graph.edges().map(|(id, _)| id.0).collect(),
         };
-        ids.sort_unstable();
-        ids.dedup();
         let mut profile = Profile::EMPTY;
         let (mut length_m, mut fourfold) = (0.0, Vec2::ZERO);
         let mut nodes = Vec::new();
@@ -355,6 +340,18 @@ impl Around {
         nodes.into_iter().for_each(|n| profile.count_node(graph, n, 1.0));
         Self { profile, alignment: fourfold.length() / length_m.max(1.0) }
     }
+}
+
+/// The junction of most streets, of these the one nearest to `middle`: where a fragment is laid on an
+/// example's junction.
+fn anchor(streets: &StreetGraph, middle: Vec2) -> Result<NodeId, Error> {
+    let off = |n: GridPoint| n.to_m().distance(middle);
+    let anchor = streets.nodes().map(|(id, n)| (id, n.at)).max_by(|(a, p), (b, q)| {
+        let degrees = streets.degree(*a).min(4).cmp(&streets.degree(*b).min(4));
+        degrees.then(off(*q).total_cmp(&off(*p))).then(b.cmp(a))
+    });
+    let anchor = anchor.map(|(id, _)| id).filter(|id| streets.degree(*id) >= 3);
+    anchor.ok_or_else(|| Error::Like("holds no junction of three streets; draw one".into()))
 }
 
 /// Distance to the nearest street, [`APART_M`] at most.

@@ -6,13 +6,12 @@
 
 use std::sync::Arc;
 
+use exurb_city::area::WITHOUT_STREETS;
 use exurb_city::{Area, City, Land};
 use exurb_geom::{GridPoint, Polygon, Vec2, polyline, trig};
 
 use super::params::Params;
 
-/// Land uses that streets leave alone; paths drawn there are given streets.
-const KEPT: [&str; 2] = ["park", "cemetery"];
 /// Places along a street that are looked at, in metres.
 const STEP_M: f64 = 4.0;
 /// The grade of a street is that over this length, in metres.
@@ -38,9 +37,9 @@ pub struct Relief {
     known: Polygon,
 }
 
-/// Areas of the parameters that streets leave alone.
+/// Areas of the parameters that streets leave alone; paths drawn there are given streets.
 pub fn parks(params: &Params) -> impl Iterator<Item = Area> + '_ {
-    let parks = params.areas.areas().iter().filter(|area| KEPT.contains(&&*area.usage));
+    let parks = params.areas.areas().iter().filter(|area| WITHOUT_STREETS.contains(&&*area.usage));
     parks.filter_map(|area| {
         Some(Area { id: 0, polygon: area.polygon()?, class: area.usage.as_str().into() })
     })
@@ -65,7 +64,7 @@ impl Relief {
         let land = Land::of(city);
         let land = (land.has_terrain() || land.has_water()).then_some(land);
         let mut kept = City::empty(city.frame.clone(), city.target.clone());
-        let is_kept = |area: &&Area| KEPT.contains(&&*area.class);
+        let is_kept = |area: &&Area| WITHOUT_STREETS.contains(&&*area.class);
         let known = city.land_use.iter().filter(is_kept).cloned();
         kept.water = Arc::new(known.chain(parks(params)).collect());
         let parks = (!kept.water.is_empty()).then(|| Land::of(&kept));
