@@ -317,7 +317,7 @@ mod tests {
         let room = Room {
             ground: &ground,
             open: &open.near(&block),
-            spacing: Spacing { pavement_m: 2.0, tolerance: 0.1 },
+            spacing: Spacing { pavement_m: 2.0, tolerance: 0.1, cut: 0.0 },
             goal_m2: goal * block.area_m2(),
             shifts: 2,
             least: 0.5,

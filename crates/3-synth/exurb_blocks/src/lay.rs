@@ -1,12 +1,12 @@
 //! A layout's buildings and things in their new places: refined, with all that is known of them.
 
 use exurb_city::{Building, Feature, FeatureShape, Origin, Provenance};
-use exurb_geom::{GridPoint, Polygon, Rigid};
+use exurb_geom::{BoxGrid, GridPoint, Polygon, Rigid, overlap, overlay};
 
 use crate::database::{self, Footprint, Layout};
 use crate::library::OpenNearby;
 use crate::motion::Motion;
-use crate::refine::{Body, Fate, Ground, Why, refine};
+use crate::refine::{Body, Fate, Ground, SLACK_M2, Why, refine};
 
 /// Where an element of a layout is wished for.
 #[derive(Clone, Copy, Debug)]
@@ -24,6 +24,8 @@ pub struct Spacing {
     pub pavement_m: f64,
     /// Share by which footprints may change to fit.
     pub tolerance: f64,
+    /// Share of a footprint that may be cut off where it is wished for in an earlier one.
+    pub cut: f64,
 }
 
 /// A layout in its new place.
@@ -68,6 +70,7 @@ pub fn lay(
             Err(why) => out.dropped.push(why),
         }
     }
+    cut_by_earlier(&mut bodies, spacing.cut);
     let provenance = layout.provenance();
     let fates = refine(ground, &bodies, spacing.tolerance);
     for ((fate, body), wish) in fates.into_iter().zip(bodies).zip(of_body) {
@@ -125,6 +128,33 @@ pub(crate) fn body(
     Ok(Body { polygon, clearance_m: wish.what.clearance_m.min(pavement_m) })
 }
 
+/// Where footprints are wished for in one another, later ones lose what they share with earlier ones: rows
+/// that are laid out anew end at the rows that stand. What would lose more than `most`, a share, is left
+/// for refinement to part.
+fn cut_by_earlier(bodies: &mut [Body], most: f64) {
+    if most <= 0.0 {
+        return;
+    }
+    let boxes = BoxGrid::of(bodies.iter().map(|b| &b.polygon));
+    let mut near = Vec::new();
+    for i in 0..bodies.len() {
+        boxes.meeting_polygon(&bodies[i].polygon, &mut near);
+        let earlier = near.iter().map(|j| *j as usize).filter(|j| *j < i);
+        let met: Vec<&Polygon> = earlier
+            .map(|j| &bodies[j].polygon)
+            .filter(|p| overlap::shared_m2(&bodies[i].polygon, p, SLACK_M2) > SLACK_M2)
+            .collect();
+        if met.is_empty() {
+            continue;
+        }
+        let left = overlay::difference(&bodies[i].polygon, met).into_iter().next();
+        let least_m2 = bodies[i].polygon.area_m2() * (1.0 - most);
+        if let Some(left) = left.filter(|p| p.area_m2() >= least_m2 && p.is_valid()) {
+            bodies[i].polygon = left;
+        }
+    }
+}
+
 /// The motion of an outline to what it became.
 fn between(from: &Polygon, to: &Polygon) -> Rigid {
     let (a, b) = (from.exterior(), to.exterior());
@@ -164,5 +194,27 @@ impl Layout {
         let footprints = self.footprints.iter().map(|what| Wish { what, motion });
         let things = self.things.iter().map(|what| Wish { what, motion });
         (footprints.collect(), things.collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn later_footprints_are_cut_where_they_meet_earlier_ones() {
+        let body = |x: f64| Body {
+            polygon: Polygon::rectangle(GridPoint::m(x, 0.0), GridPoint::m(x + 10.0, 10.0)),
+            clearance_m: 2.0,
+        };
+        // The second lies in the first with a fifth, the third in the second with a half.
+        let wished = [body(0.0), body(8.0), body(13.0)];
+        let mut bodies = wished.clone();
+        cut_by_earlier(&mut bodies, 0.0);
+        assert!(bodies.iter().zip(&wished).all(|(a, b)| a.polygon == b.polygon));
+        cut_by_earlier(&mut bodies, 0.35);
+        let areas: Vec<f64> = bodies.iter().map(|b| b.polygon.area_m2()).collect();
+        assert_eq!(areas, [100.0, 80.0, 100.0]);
+        assert_eq!(overlap::shared_m2(&bodies[0].polygon, &bodies[1].polygon, 0.0), 0.0);
     }
 }

@@ -139,7 +139,7 @@ pub fn tried(
     let is_same = deviation_m < SAME_M && found.shape_cost < 0.05;
     let standing = site.standing(is_same);
     let ground = site.ground(&standing, is_same);
-    let spacing = Spacing { pavement_m: choosing.pavement, tolerance: choosing.tolerance };
+    let spacing = choosing.spacing();
     let transferred = || {
         let (footprints, things) = layout.wished(motion.into());
         lay(layout, &footprints, &things, &ground, open, spacing)
@@ -182,7 +182,7 @@ pub fn filled_up(
     let is_same = tried[first].is_same;
     let standing = site.standing(is_same);
     let ground = site.ground(&standing, is_same);
-    let spacing = Spacing { pavement_m: choosing.pavement, tolerance: choosing.tolerance };
+    let spacing = choosing.spacing();
     let room = Room { ground: &ground, open, spacing, goal_m2, shifts: FINE, least };
     let others = (0..tried.len()).filter(|k| *k != first);
     let sources: Vec<(u32, Rigid)> =
@@ -222,5 +222,6 @@ fn retargeted(
     let placed = source.retarget(ground.block, &site.ring, &link, &ways.settings);
     let footprints = wishes(layout, &placed);
     let things = crate::retarget::things(layout, &source, &placed, ground.block, &site.ring, &link);
+    let spacing = Spacing { cut: ways.settings.cut, ..spacing };
     lay(layout, &footprints, &things, ground, open, spacing)
 }

@@ -91,6 +91,11 @@ impl Default for Choosing {
 }
 
 impl Choosing {
+    /// How close things may come.
+    pub(crate) fn spacing(&self) -> crate::lay::Spacing {
+        crate::lay::Spacing { pavement_m: self.pavement, tolerance: self.tolerance, cut: 0.0 }
+    }
+
     /// The weights for a query.
     pub fn weights(&self) -> exurb_match::Weights {
         exurb_match::Weights {

@@ -106,9 +106,14 @@ impl Groups {
         }
         let mut groups: Vec<Group> = Vec::new();
         let mut behind = Vec::new();
-        for ((side, path), members) in paths.into_iter().zip(members) {
+        let mut by_side = Vec::new();
+        for members in members {
             let (together, alone) = compounds(members);
             behind.extend(alone);
+            by_side.push(together);
+        }
+        each_behind_one(&mut by_side);
+        for ((side, path), together) in paths.into_iter().zip(by_side) {
             let elements = together
                 .into_iter()
                 .map(|(members, kind, span)| element(&path, members, kind, span, polygons))
@@ -229,7 +234,25 @@ fn homes(lies: &[Lie], reach_m: f64) -> Vec<usize> {
     [Some(first), second].into_iter().flatten().collect()
 }
 
+/// What stands at a side, the foremost first; how it behaves; where it stands along the side.
 type Compound = (Vec<usize>, Kind, (f64, f64));
+
+/// At a corner, what stands behind a house of one side and behind one of the next goes with the first of
+/// them alone, and with none where it is itself the foremost at a side: else neither house could be laid
+/// out without the other. What then stands at one side only may be repeated.
+fn each_behind_one(sides: &mut [Vec<Compound>]) {
+    let in_front: Vec<usize> = sides.iter().flatten().map(|c| c.0[0]).collect();
+    let mut behind = Vec::new();
+    for (members, ..) in sides.iter_mut().flatten() {
+        let front = members[0];
+        members.retain(|i| *i == front || !(in_front.contains(i) || behind.contains(i)));
+        behind.extend_from_slice(&members[1..]);
+    }
+    for (members, kind, _) in sides.iter_mut().flatten() {
+        let sides_of_front = in_front.iter().filter(|i| **i == members[0]).count();
+        *kind = if sides_of_front > 1 { Kind::Fixed } else { Kind::Repeatable };
+    }
+}
 
 /// Elements in order along a side, each with what stands behind it; and what stands behind several.
 fn compounds(mut members: Vec<(usize, Kind, Lie)>) -> (Vec<Compound>, Vec<usize>) {

@@ -1,7 +1,7 @@
 //! One line of the new layout as a problem of labelling: what each element costs at each step along it,
 //! and where the elements of the cheapest sequence come to stand.
 
-use exurb_geom::{Bounds, Rigid, Vec2, trig};
+use exurb_geom::{Rigid, Vec2, trig};
 
 use super::Settings;
 use super::groups::{Element, Group, Kind};
@@ -9,7 +9,7 @@ use super::guidance::middle;
 use super::label::{self, Problem};
 use super::slices::Slices;
 use super::spacing::{Wish, spaced};
-use super::synthesize::{TOUCH_M, Track, Work};
+use super::synthesize::{Track, Work};
 use crate::motion::Motion;
 
 /// A fixed element stands where it covers at least this share of its image.
@@ -24,6 +24,12 @@ const UNGUIDED_COST: f64 = 0.3;
 const CLOSE_SHARE: f64 = 0.6;
 /// Elements reach past the ends of their path by at most this, in metres.
 const MOST_PAD_M: f64 = 15.0;
+/// Elements that share no walls may lie in others with this share of them.
+const TOUCH_SHARE: f64 = 0.03;
+/// What an element costs of which a share is cut off, as a multiple of that share of its length.
+const CUT_COST: f64 = 2.0;
+/// The same where nothing guides it: filling a gap with the most that may be cut costs less than the gap.
+const UNGUIDED_CUT_COST: f64 = 0.8;
 /// Ground counts as taken where the map covers this share of the usual depth.
 const TAKEN_DEPTH: f64 = 0.5;
 
@@ -40,9 +46,20 @@ pub struct Line<'t, 'a> {
     problem: Problem,
     /// Where each element's image lies along the path, if it has one.
     image_m: Vec<Option<f64>>,
-    /// What stands along the path already, from and to.
-    blocked: Vec<(f64, f64)>,
+    /// What stands along the path already.
+    standing: Vec<Standing>,
 }
+
+/// A body that stands along a path.
+struct Standing {
+    /// From where to where it stands at the front, if it does.
+    front_m: Option<(f64, f64)>,
+    /// As seen from the path.
+    slices: Slices,
+}
+
+/// What reaches as near to the building line of a path is at its front, in metres.
+const FRONT_M: f64 = 8.0;
 
 impl<'t, 'a> Line<'t, 'a> {
     /// With no elements yet; room for those of `pool` that reach past the ends.
@@ -71,7 +88,7 @@ impl<'t, 'a> Line<'t, 'a> {
                 same_pair: Vec::new(),
             },
             image_m: Vec::new(),
-            blocked: Vec::new(),
+            standing: Vec::new(),
         }
     }
 
@@ -82,7 +99,7 @@ impl<'t, 'a> Line<'t, 'a> {
         let usual_depth =
             pool.iter().map(|(_, e)| e.depth_m).sum::<f64>() / pool.len().max(1) as f64;
         let depth = usual_depth.min(settings.empty_depth).max(1.0);
-        line.blocked = line.standing(work, usual_depth.max(1.0));
+        line.standing = line.standing(pool, work);
         let mut taken = vec![0.0; steps];
         let mut images = Vec::new();
         for (group, element) in pool {
@@ -109,14 +126,10 @@ impl<'t, 'a> Line<'t, 'a> {
         work: &Work<'_>,
     ) -> Self {
         let mut line = Self::empty(track, &[], work);
-        let usual_depth =
-            pool.iter().map(|(_, e)| e.depth_m).sum::<f64>() / pool.len().max(1) as f64;
-        line.blocked = line.standing(work, usual_depth.max(1.0));
-        let taken = |from: f64, to: f64, by: f64| {
-            line.blocked.iter().any(|(low, high)| low + by < to && from < high - by)
-        };
+        line.standing = line.standing(pool, work);
+        let taken = |from: f64, to: f64| line.fronts().any(|(low, high)| low < to && from < high);
         let empty: Vec<f64> = (0..line.problem.steps)
-            .map(|k| if taken(line.at_m(k), line.at_m(k + 1), 0.0) { 0.0 } else { line.step_m })
+            .map(|k| if taken(line.at_m(k), line.at_m(k + 1)) { 0.0 } else { line.step_m })
             .collect();
         for (group, element) in pool {
             let length = line.steps_of_length(element);
@@ -124,8 +137,8 @@ impl<'t, 'a> Line<'t, 'a> {
             let starts = (line.problem.steps + 1).saturating_sub(length);
             for (start, cost) in costs.iter_mut().enumerate().take(starts) {
                 let (from, to) = (line.at_m(start), line.at_m(start + length));
-                if !taken(from, to, TOUCH_M) && work.is_free(&line.rings(element, from, to)) {
-                    *cost = UNGUIDED_COST * (to - from);
+                if let Some(cut) = line.cut_share(element, from, to, work) {
+                    *cost = (UNGUIDED_COST + UNGUIDED_CUT_COST * cut) * (to - from);
                 }
             }
             line.problem.same_pair.push(1.0 - work.settings.alpha);
@@ -143,9 +156,14 @@ impl<'t, 'a> Line<'t, 'a> {
         let steps = (0..self.problem.steps).filter(|k| {
             let at = (self.at_m(*k) + self.at_m(k + 1)) / 2.0;
             (0.0..=self.track.path.length_m()).contains(&at)
-                && self.blocked.iter().any(|(low, high)| *low <= at && at <= *high)
+                && self.fronts().any(|(low, high)| low <= at && at <= high)
         });
         steps.count() as f64 * self.step_m
+    }
+
+    /// Stretches of the path with something at its front.
+    fn fronts(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        self.standing.iter().filter_map(|s| s.front_m)
     }
 
     /// Steps an element takes: its ends rounded in the old line, so that the lengths of a row sum up to
@@ -182,16 +200,36 @@ impl<'t, 'a> Line<'t, 'a> {
         Some(mapped()?.into_iter().zip(&kept).map(mixed).collect())
     }
 
-    /// Stretches of the path with something beside them, as deep as elements stand there.
-    fn standing(&self, work: &Work<'_>, depth_m: f64) -> Vec<(f64, f64)> {
+    /// What stands along the path already, as deep as elements of `pool` stand there.
+    fn standing(&self, pool: &[(&Group, &Element)], work: &Work<'_>) -> Vec<Standing> {
         let path = &self.track.path;
-        let stretch = |(_, rings): &(Bounds, Vec<Vec<Vec2>>)| {
-            let near = rings[0].iter().filter(|p| path.nearest(**p).1 <= depth_m);
-            near.map(|p| path.project(*p)).fold(None, |found: Option<(f64, f64)>, at| {
-                Some(found.map_or((at, at), |(l, h)| (l.min(at), h.max(at))))
-            })
+        let mean = |of: &dyn Fn(&Element) -> f64| {
+            pool.iter().map(|(_, e)| of(e)).sum::<f64>() / pool.len().max(1) as f64
         };
-        work.bodies.iter().filter_map(stretch).collect()
+        let depth_m = mean(&|e| e.depth_m).max(1.0);
+        let setback_m =
+            |e: &Element| e.rings.iter().flatten().map(|p| p.y).fold(f64::INFINITY, f64::min);
+        let front_m = (mean(&setback_m) + FRONT_M).min(depth_m);
+        let is_near =
+            |rings: &&Vec<Vec<Vec2>>| rings[0].iter().any(|p| path.nearest(*p).1 <= depth_m);
+        let seen = |rings: &Vec<Vec<Vec2>>| {
+            let slices = self.unrolled(rings);
+            Standing { front_m: slices.span_m(front_m), slices }
+        };
+        work.bodies.iter().filter(is_near).map(seen).collect()
+    }
+
+    /// The share of an element, between two places along the path, that lies in what stands there, up to
+    /// what may be cut off; `None` where it is more, or where it reaches over the outline. What stands
+    /// alone is not cut, but for a touch that refinement parts.
+    fn cut_share(&self, element: &Element, from_m: f64, to_m: f64, work: &Work<'_>) -> Option<f64> {
+        let middle_m = (from_m + to_m) / 2.0;
+        let shared = |s: &Standing| element.slices.shared_m2(middle_m, &s.slices);
+        let share = self.standing.iter().map(shared).sum::<f64>() / element.area_m2;
+        let attached = element.walls.0 || element.walls.1;
+        let most = if attached { work.settings.cut } else { work.settings.cut.min(TOUCH_SHARE) };
+        let fits = share <= most && work.is_inside(&self.rings(element, from_m, to_m));
+        fits.then_some(share)
     }
 
     /// Adds to `taken` how much of the usual depth an image covers at each step.
@@ -229,9 +267,10 @@ impl<'t, 'a> Line<'t, 'a> {
                 let shared = element.slices.shared_m2((from + to) / 2.0, &slices);
                 let share = (shared / element.area_m2).min(1.0);
                 let least = if element.kind == Kind::Fixed { FIXED_SHARE } else { 0.0 };
-                if share <= least || !work.is_free(&self.rings(element, from, to)) {
+                if share <= least {
                     continue;
                 }
+                let Some(cut) = self.cut_share(element, from, to, work) else { continue };
                 let gaps: f64 = taken[start..start + length].iter().map(|t| 1.0 - t).sum();
                 *cost = if settings.printed_cost {
                     element.area_m2 * (1.0 - share)
@@ -240,6 +279,7 @@ impl<'t, 'a> Line<'t, 'a> {
                         + settings.gap_cost * gaps * self.step_m
                         + OFF_COST * ((from + to) / 2.0 - at_m).abs()
                 };
+                *cost += CUT_COST * cut * (to - from);
                 if let Some(turn) = turn {
                     let off = trig::angle_between(self.track.path.frame(from, to).turn, turn);
                     *cost += settings.turn_cost * (to - from) * trig::sin(off).powi(2);
@@ -432,19 +472,30 @@ impl<'t, 'a> Line<'t, 'a> {
         let wall_before = self.pool[sequence[chain.first].0].1.walls.0;
         let wall_after = self.pool[chain.last].1.walls.1;
         let blocked = |limit: f64, up: bool| {
-            let ends = self.blocked.iter().map(|(from, to)| if up { *from } else { *to });
+            let ends = self.fronts().map(|(from, to)| if up { from } else { to });
             let middle = (start + end) / 2.0;
             let beyond = ends.filter(|at| if up { *at > middle } else { *at < middle });
             if up { beyond.fold(limit, f64::min) } else { beyond.fold(limit, f64::max) }
         };
         let (low, high) = (blocked(before, false), blocked(after, true));
-        // What is left on both sides, as far as the stretch goes.
+        // What is left on both sides; less than nothing where it lies in others.
+        let most_m = stretch * chain.length_m;
         let gap = |wall: bool, gap: f64| {
-            if wall && gap <= CLOSE_SHARE * chain.length_m { gap } else { 0.0 }
+            let close = wall && gap <= CLOSE_SHARE * chain.length_m;
+            if close { gap.max(-most_m) } else { 0.0 }
         };
         let (before, after) = (gap(wall_before, start - low), gap(wall_after, high - end));
-        let share = (stretch * chain.length_m / (before + after).max(1e-9)).min(1.0);
-        let (from, to) = (start - before * share, end + after * share);
+        let (from, to) = if before > 0.0 && after > 0.0 && before + after > most_m {
+            // Both cannot be closed: the narrower one is, and what is left of the other is one gap.
+            let most_m = most_m.min(before.max(after));
+            if before <= after {
+                (low, end - before + most_m)
+            } else {
+                (start + after - most_m, high)
+            }
+        } else {
+            (start - before.min(most_m), end + after.min(most_m))
+        };
         if to - from > 0.5 * chain.length_m { (from, to) } else { (start, end) }
     }
 

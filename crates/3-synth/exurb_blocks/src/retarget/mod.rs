@@ -132,7 +132,7 @@ fn edited(city: &City, params: &Params, run: &Run) -> Result<Edit, Error> {
         );
     }
     let choosing = &params.choosing;
-    let spacing = Spacing { pavement_m: choosing.pavement, tolerance: choosing.tolerance };
+    let spacing = Spacing { cut: params.settings.cut, ..choosing.spacing() };
     let editor = Editor::of(&layout, &params.settings, spacing);
     let laid = editor.laid(&outline, &OpenLand::of(city));
     run.tally("footprints placed", laid.buildings.iter().filter(|b| !b.is_part).count() as u64);

@@ -29,6 +29,9 @@ pub struct Settings {
     /// Share by which elements of closed rows may be lengthened along their side to keep the row closed.
     #[schemars(range(min = 0.0, max = 0.5))]
     pub stretch: f64,
+    /// Share of an element that may be cut off where it meets what stands already.
+    #[schemars(range(min = 0.0, max = 0.9))]
+    pub cut: f64,
     /// Measure costs in square metres missed, as printed in the paper, instead of metres of length.
     pub printed_cost: bool,
     /// Fit layouts of few large buildings as a whole, stretched a little, instead of element by element.
@@ -52,6 +55,7 @@ impl Default for Settings {
             gap_cost: 0.5,
             turn_cost: 0.5,
             stretch: 0.15,
+            cut: 0.35,
             printed_cost: false,
             fit_whole: true,
             local: false,

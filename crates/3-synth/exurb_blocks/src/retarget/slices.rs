@@ -101,6 +101,16 @@ impl Slices {
         self.stretches.iter().map(shared).sum::<f64>() * STEP_M / (to_m - from_m)
     }
 
+    /// From where to where along the slices they reach in those up to `depth_m`.
+    pub fn span_m(&self, depth_m: f64) -> Option<(f64, f64)> {
+        let last = (depth_m / STEP_M) as i64;
+        let rows = self.first_row..(self.first_row + self.ends.len() as i64).min(last);
+        let stretches = rows.flat_map(|row| self.row(row));
+        stretches.fold(None, |found: Option<(f64, f64)>, (a, b)| {
+            Some(found.map_or((*a, *b), |(l, h)| (l.min(*a), h.max(*b))))
+        })
+    }
+
     fn row(&self, row: i64) -> &[(f64, f64)] {
         let k = (row - self.first_row) as usize;
         let start = if k == 0 { 0 } else { self.ends[k - 1] };

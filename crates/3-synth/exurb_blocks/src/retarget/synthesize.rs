@@ -1,11 +1,11 @@
 //! The pure core: a layout, a new outline → where the elements go.
 
-use exurb_geom::{Bounds, GridPoint, Polygon, Rigid, Vec2};
+use exurb_geom::{GridPoint, Polygon, Rigid, Vec2};
 
 use super::Settings;
 use super::correspondence::Correspondence;
 use super::groups::{Element, Group, Groups, Kind};
-use super::guidance::{Guidance, middle};
+use super::guidance::Guidance;
 use super::line::Line;
 use super::path::Path;
 use super::whole;
@@ -36,8 +36,6 @@ pub struct Source {
 const OVER_ENDS_M: f64 = 3.0;
 /// A gap is filled where at least this share of an element is missing.
 const FILL_SHARE: f64 = 0.6;
-/// Elements may overlap earlier ones by this much, in metres: refinement parts them.
-pub(super) const TOUCH_M: f64 = 0.3;
 /// Elements may reach over the outline by this much, in metres.
 const OVER_M: f64 = 1.0;
 
@@ -160,7 +158,7 @@ pub(super) struct Work<'a> {
     pub(super) settings: &'a Settings,
     placed: Vec<Placement>,
     /// Rings of what stands already.
-    pub(super) bodies: Vec<(Bounds, Vec<Vec<Vec2>>)>,
+    pub(super) bodies: Vec<Vec<Vec<Vec2>>>,
 }
 
 impl<'a> Work<'a> {
@@ -239,8 +237,15 @@ impl<'a> Work<'a> {
     /// Repeats elements where a side is built on less than it was: no longer guided, the longest that
     /// find room first.
     fn fill_up(&mut self, track: &Track<'a>) {
-        let pool: Vec<(&Group, &Element)> =
-            track.pool.iter().filter(|(_, e)| e.kind == Kind::Repeatable).copied().collect();
+        let repeatable = |(_, e): &(&Group, &Element)| e.kind == Kind::Repeatable;
+        let mut pool: Vec<(&Group, &Element)> =
+            track.pool.iter().copied().filter(repeatable).collect();
+        if pool.is_empty() {
+            // Only corner buildings stood along it: what stands along the other sides is the style.
+            let sides = self.source.groups.groups.iter().filter(|g| g.side.is_some());
+            let elements = sides.flat_map(|g| g.elements.iter().map(move |e| (g, e)));
+            pool = elements.filter(repeatable).collect();
+        }
         let line = Line::unguided(track, &pool, self);
         let mut missing_m = track.built_share * track.path.length_m() - line.built_m();
         let shortest = (0..line.pool.len()).map(|e| line.length(e)).fold(f64::INFINITY, f64::min);
@@ -265,7 +270,7 @@ impl<'a> Work<'a> {
                 .rings()
                 .map(|ring| ring.iter().map(|p| motion.apply(p.to_m())).collect())
                 .collect();
-            self.bodies.push((bounds(&rings[0]), rings));
+            self.bodies.push(rings);
         }
         self.placed.push(Placement { members, motion });
     }
@@ -304,57 +309,11 @@ impl<'a> Work<'a> {
         }
     }
 
-    /// Does it stand clear of what stands already, and inside, give or take?
-    pub(super) fn is_free(&self, rings: &[Vec<Vec2>]) -> bool {
-        let own = bounds(&rings[0]);
+    /// Does it stand inside, give or take?
+    pub(super) fn is_inside(&self, rings: &[Vec<Vec2>]) -> bool {
         let domain = self.guidance.domain;
-        let inside = |p: &Vec2| {
+        rings[0].iter().all(|p| {
             domain.contains(GridPoint::round(*p)) || domain.boundary_distance_m(*p) < OVER_M
-        };
-        rings[0].iter().all(inside) && {
-            let shrunk = shrunk(&rings[0], TOUCH_M);
-            self.bodies
-                .iter()
-                .all(|(bounds, body)| !own.intersects(*bounds) || apart(&shrunk, &body[0]))
-        }
-    }
-}
-
-fn bounds(ring: &[Vec2]) -> Bounds {
-    let start = (Vec2::INFINITY, Vec2::NEG_INFINITY);
-    let (min, max) = ring.iter().fold(start, |(l, h), p| (l.min(*p), h.max(*p)));
-    Bounds { min, max }
-}
-
-/// A ring drawn towards its middle by about `by_m`.
-fn shrunk(ring: &[Vec2], by_m: f64) -> Vec<Vec2> {
-    let middle = middle(ring);
-    let draw = |p: &Vec2| {
-        let way = *p - middle;
-        let length = way.length();
-        middle + way * ((length - by_m).max(length * 0.2) / length.max(1e-9))
-    };
-    ring.iter().map(draw).collect()
-}
-
-/// Do two rings share no inside? By sides that cross and corners that lie inside.
-fn apart(a: &[Vec2], b: &[Vec2]) -> bool {
-    let sides = |r: &'_ [Vec2], i: usize| (r[i], r[(i + 1) % r.len()]);
-    let crosses = (0..a.len()).any(|i| {
-        let (p, q) = sides(a, i);
-        (0..b.len()).any(|j| {
-            let (r, s) = sides(b, j);
-            let side = |u: Vec2, v: Vec2, w: Vec2| (v - u).perp_dot(w - u);
-            side(p, q, r) * side(p, q, s) < 0.0 && side(r, s, p) * side(r, s, q) < 0.0
         })
-    });
-    !crosses && !winds_around(b, a[0]) && !winds_around(a, b[0])
-}
-
-fn winds_around(ring: &[Vec2], p: Vec2) -> bool {
-    (0..ring.len()).fold(false, |inside, i| {
-        let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
-        let crossed = (a.y > p.y) != (b.y > p.y) && ((b - a).perp_dot(p - a) > 0.0) == (b.y > a.y);
-        inside ^ crossed
-    })
+    }
 }

@@ -96,6 +96,54 @@ fn sides_whose_ends_stay_keep_their_layout_where_asked() {
     assert_eq!(uses(&drawn, ROW), 9);
 }
 
+/// A block of 100 m by 162 m, tightly packed: two rows of six houses 30 m deep, a house between the rows at
+/// both ends, and behind one of these a shed that a corner building stands before, too.
+fn packed_block() -> (Vec<GridPoint>, Vec<Polygon>) {
+    let outline = ring(&[(0., 0.), (100., 0.), (100., 162.), (0., 162.)]);
+    let mut houses = vec![];
+    for x in [3.0, 67.0] {
+        houses.extend((0..6).map(|k| house(x, 3.0 + 26.0 * f64::from(k), 30.0, 26.0)));
+    }
+    houses.extend([3.0, 129.0].map(|y| house(33.0, y, 34.0, 30.0)));
+    houses.push(house(33.0, 33.0, 12.0, 10.0));
+    (outline, houses)
+}
+
+/// Figure 5 of the paper: a tightly packed block stays one when it is sheared and drawn out.
+#[test]
+fn closed_rows_stay_closed() {
+    let (old, houses) = packed_block();
+    let settings = Settings::default();
+    let source = Source::of(&old, houses.clone(), &[], &settings);
+    let outline = ring(&[(-30., -10.), (100., 0.), (130., 165.), (0., 162.)]);
+    let domain = Polygon::new(outline.clone(), vec![]).expect("has area");
+    let link = Correspondence::by_vertices(&old, &outline).expect("vertices stayed");
+    let placed = source.retarget(&domain, &outline, &link, &settings);
+    let stands: Vec<Polygon> = placed
+        .iter()
+        .flat_map(|p| p.members.iter().filter_map(|m| p.motion.apply_polygon(&houses[*m])))
+        .collect();
+    let around = crate::ring::Ring::of(&outline);
+    let is_open = |p: &exurb_geom::Vec2| {
+        let at_corner = outline.iter().any(|c| c.to_m().distance(*p) < 25.0);
+        !at_corner && stands.iter().all(|house| house.boundary_distance_m(*p) > 8.0)
+    };
+    let kerb = (0..around.length_m() as u32).map(|at| around.point_at(f64::from(at)));
+    let open: Vec<exurb_geom::Vec2> = kerb.filter(is_open).collect();
+    assert!(open.is_empty(), "nothing stands at {open:?}");
+}
+
+/// What stands behind two houses at a corner goes with one of them: each can be laid out without the
+/// other.
+#[test]
+fn what_stands_behind_goes_with_one_house() {
+    let (outline, houses) = packed_block();
+    let shed = houses.len() - 1;
+    let source = Source::of(&outline, houses, &[], &Settings::default());
+    let elements = source.groups().groups.iter().flat_map(|g| &g.elements);
+    assert!(elements.filter(|e| e.members.contains(&shed)).count() <= 1);
+}
+
 /// Figure 1b of the paper: an office floor. Rooms share walls along a corridor.
 #[test]
 fn a_floor_plan_is_laid_out_anew() {
