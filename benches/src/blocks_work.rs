@@ -35,7 +35,8 @@ pub fn retarget(city: &City) -> Outcome {
         (0..city.blocks.len()).filter_map(|i| BlockDatabase::layout_of(city, &city.blocks, i));
     let layout = layouts.min_by_key(|l| l.footprints.len().abs_diff(40)).ok_or("no blocks")?;
     let settings = Settings::default();
-    let editor = Editor::of(&layout, &settings, Spacing { pavement_m: 2.0, tolerance: 0.1 });
+    let spacing = Spacing { pavement_m: 2.0, tolerance: 0.1, cut: settings.cut };
+    let editor = Editor::of(&layout, &settings, spacing);
     let middle = layout.kerb.centroid();
     let wider = |p: Vec2| middle + (p - middle) * Vec2::new(1.1, 1.0);
     let outline = layout.kerb.map(wider).ok_or("no outline")?;

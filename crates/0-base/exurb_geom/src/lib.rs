@@ -82,6 +82,6 @@ pub use polygon::Polygon;
 pub use projection::{Frame, LonLat};
 pub use rigid::Rigid;
 pub use roadside::Roadside;
-pub use row_polygon::RowPolygon;
+pub use row_polygon::{RowPolygon, RowSides};
 pub use segment_grid::SegmentGrid;
 pub use segment_index::SegmentIndex;

@@ -14,7 +14,7 @@ pub struct SegmentGrid {
 }
 
 /// Cells are at least this wide, so that heaps of tiny segments do not make a fine grid.
-const LEAST_CELL_MM: f64 = 5_000.0;
+const LEAST_CELL_MM: f64 = 2_000.0;
 
 impl SegmentGrid {
     /// The index of `segments`. Cells are as wide as the mean segment is long.

@@ -1,8 +1,6 @@
 //! Borders between groups of points: the edges of a Voronoi diagram whose two sides belong to
 //! different groups.
 
-use std::collections::BTreeMap;
-
 use spade::handles::VoronoiVertex;
 use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
 
@@ -98,15 +96,19 @@ fn clipped(from: End, to: End, bounds: Bounds) -> Option<(End, End)> {
 
 /// Joins segments where exactly two meet in a Voronoi vertex.
 fn chained(pieces: &[(End, End)]) -> Vec<Vec<Vec2>> {
-    let mut at: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    // By vertex the pieces that end there, up to three.
+    let vertices = pieces.iter().flat_map(|(a, b)| [a.1, b.1]).flatten().max().map_or(0, |v| v + 1);
+    let mut at = vec![(0u8, [0usize; 3]); vertices as usize];
     for (i, (a, b)) in pieces.iter().enumerate() {
         for vertex in [a.1, b.1].into_iter().flatten() {
-            at.entry(vertex).or_default().push(i);
+            let (count, list) = &mut at[vertex as usize];
+            list[usize::from(*count).min(2)] = i;
+            *count += 1;
         }
     }
     let next = |vertex: Option<u32>, from: usize| {
-        let list = at.get(&vertex?)?;
-        (list.len() == 2).then(|| if list[0] == from { list[1] } else { list[0] })
+        let (count, list) = at[vertex? as usize];
+        (count == 2).then(|| if list[0] == from { list[1] } else { list[0] })
     };
     let mut used = vec![false; pieces.len()];
     let mut out = Vec::new();

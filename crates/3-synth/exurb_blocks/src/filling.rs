@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use exurb_city::{Area, Block, Building, City, Edit, Feature, Parcel, Provenance, area};
-use exurb_geom::{GridPoint, Polygon, offset};
+use exurb_geom::{GridPoint, Polygon, RowSides, offset};
 
 use crate::kerb::Kerb;
 use crate::parcels::{ACCESS_M, Holding, cadastre};
@@ -83,15 +83,16 @@ impl Filling {
         let whole: Vec<usize> =
             (0..self.buildings.len()).filter(|i| !self.buildings[*i].is_part).collect();
         let clearance = |i: &usize| {
-            kerb.clearance_up_to_m(most_pavement_m, &self.buildings[*i].polygon, &block.polygon)
+            kerb.clearance_up_to_m(most_pavement_m, &self.buildings[*i].polygon)
         };
         let least_m = whole.iter().map(clearance).fold(most_pavement_m, f64::min);
         // In whole centimetres, rounded down.
         self.pavement_m = (least_m.max(0.0) * 100.0).floor() / 100.0;
         let mut parcel = vec![0; self.buildings.len()];
         for ground in offset::inset(&block.polygon, self.pavement_m) {
+            let sides = RowSides::new(&ground);
             let on = |i: &&usize| {
-                ground.contains(GridPoint::round(self.buildings[**i].polygon.interior_point()))
+                sides.contains(GridPoint::round(self.buildings[**i].polygon.interior_point()))
             };
             let here: Vec<usize> = whole.iter().filter(on).copied().collect();
             let footprints: Vec<&Polygon> =

@@ -1,6 +1,6 @@
 //! The outline of a block as a list of rings, and the place on it nearest to a point.
 
-use exurb_geom::{GridPoint, Polygon, SegmentGrid, Vec2, grid, polyline};
+use exurb_geom::{GridPoint, Polygon, RowSides, SegmentGrid, Vec2, grid, polyline};
 
 use crate::ring::Ring;
 
@@ -21,6 +21,7 @@ pub struct Kerb {
     /// Its rings.
     pub rings: Vec<Ring>,
     grid: SegmentGrid,
+    sides: RowSides,
     /// Ring and start along it of every segment of the grid.
     starts: Vec<(usize, f64)>,
 }
@@ -42,7 +43,8 @@ impl Kerb {
                 at += ring[i].distance_m(ring[(i + 1) % ring.len()]);
             }
         }
-        Self { rings, grid: SegmentGrid::new(block.segments().collect()), starts }
+        let grid = SegmentGrid::new(block.segments().collect());
+        Self { rings, grid, sides: RowSides::new(block), starts }
     }
 
     /// Length of all rings in metres.
@@ -82,19 +84,19 @@ impl Kerb {
         self.rings.iter().fold(false, |inside, ring| inside ^ ring.winds_around(p))
     }
 
-    /// Distance of an outline to the kerb of `block` in metres, negative where it reaches over it.
-    pub fn clearance_m(&self, outline: &Polygon, block: &Polygon) -> f64 {
-        self.clearance_up_to_m(f64::INFINITY, outline, block)
+    /// Distance of an outline to the kerb in metres, negative where it reaches over it.
+    pub fn clearance_m(&self, outline: &Polygon) -> f64 {
+        self.clearance_up_to_m(f64::INFINITY, outline)
     }
 
     /// The same where it is less than `most_m`, else that.
-    pub fn clearance_up_to_m(&self, most_m: f64, outline: &Polygon, block: &Polygon) -> f64 {
+    pub fn clearance_up_to_m(&self, most_m: f64, outline: &Polygon) -> f64 {
         if self.crosses(outline) {
             return -1.0;
         }
         let mut least = most_m;
         for p in outline.exterior() {
-            let inside = block.contains(*p);
+            let inside = self.sides.contains(*p);
             let distance_m = match inside && most_m <= FIRST_M {
                 true => self.within(p.to_m(), most_m).map_or(most_m, |found| found.1.distance_m),
                 false => self.nearest(p.to_m()).1.distance_m,
@@ -103,9 +105,10 @@ impl Kerb {
         }
         // Corners of the kerb that come near a long wall, or stand in the building.
         let bounds = outline.bounds().grown(least.max(0.0));
-        for corner in block.rings().flatten().filter(|p| bounds.contains(p.to_m())) {
+        let corners = (0..self.starts.len() as u32).map(|id| self.grid.segment(id).0);
+        for corner in corners.filter(|p| bounds.contains(p.to_m())) {
             let distance_m = outline.boundary_distance_m(corner.to_m());
-            least = least.min(if outline.contains(*corner) { -distance_m } else { distance_m });
+            least = least.min(if outline.contains(corner) { -distance_m } else { distance_m });
         }
         least
     }

@@ -226,7 +226,7 @@ fn footprints(
     let (mut out, flaws) = tidied(&block.polygon, footprints.collect(), FLAW_TOLERANCE);
     let kerb = Kerb::of(&block.polygon);
     for footprint in &mut out {
-        footprint.clearance_m = kerb.clearance_m(&footprint.building.polygon, &block.polygon);
+        footprint.clearance_m = kerb.clearance_m(&footprint.building.polygon);
     }
     for part in parts {
         let p = GridPoint::round(part.polygon.interior_point());

@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use exurb_geom::{GridPoint, Polygon, Vec2, polyline};
+use exurb_geom::{GridPoint, Polygon, RowSides, Vec2, polyline};
 use exurb_graph::{EdgeId, FaceId, Faces, Graph, NodeId, noding};
 
 /// Faces of a cut ground, grouped into pieces.
@@ -43,12 +43,13 @@ impl Tiling {
             closed.chain(cuts).map(|points| noding::Line { points, level: 0, data: () }).collect();
         let graph = graph_of(noding::node(linework, noding::Options::default()));
         let faces = Faces::of(&graph, |_| true);
+        let inside = RowSides::new(ground);
         let owners: Vec<Option<u32>> = faces
             .list
             .iter()
             .map(|face| {
                 let p = face.polygon.interior_point();
-                ground.contains(GridPoint::round(p)).then(|| owner(p))
+                inside.contains(GridPoint::round(p)).then(|| owner(p))
             })
             .collect();
         let (piece, pieces) = connected(&graph, &faces, &owners);
@@ -65,19 +66,34 @@ impl Tiling {
     /// holds, too, come last.
     pub fn join(&mut self, wanting: impl Fn(&Piece) -> bool) {
         let mut alone = vec![false; self.pieces.len()];
+        // The edges around each piece; those that come to lie inside stay listed.
+        let mut edges = vec![Vec::new(); self.pieces.len()];
+        for (id, _) in self.graph.edges() {
+            let side = |dart: exurb_graph::Dart| self.piece_of(self.faces.left[dart.index()]);
+            let (a, b) = (side(id.forward()), side(id.backward()));
+            for piece in [a, b.filter(|_| a != b)].into_iter().flatten() {
+                edges[piece].push(id);
+            }
+        }
         loop {
             let smallest = self
                 .pieces()
                 .filter(|(i, p)| !alone[*i] && wanting(p))
                 .min_by(|a, b| a.1.area_m2.total_cmp(&b.1.area_m2).then(a.0.cmp(&b.0)));
             let Some((small, _)) = smallest else { return };
-            let shared = self.shared_borders(small);
+            let shared = self.shared_borders(small, &edges[small]);
             let taker = shared.iter().max_by(|a, b| {
                 let fit = |i: usize| !wanting(&self.pieces[i]);
                 fit(*a.0).cmp(&fit(*b.0)).then(a.1.total_cmp(b.1)).then(b.0.cmp(a.0))
             });
             match taker {
-                Some((taker, _)) => self.give(small, *taker),
+                Some((taker, _)) => {
+                    self.give(small, *taker);
+                    let given = std::mem::take(&mut edges[small]);
+                    edges[*taker].extend(given);
+                    // In order, so that lengths sum up the same however pieces came together.
+                    edges[*taker].sort_unstable();
+                }
                 None => alone[small] = true,
             }
         }
@@ -106,15 +122,15 @@ impl Tiling {
         self.piece[face?.0 as usize]
     }
 
-    /// Length of the border with each neighbouring piece.
-    fn shared_borders(&self, piece: usize) -> BTreeMap<usize, f64> {
+    /// Length of the border with each neighbouring piece, of the edges around a piece.
+    fn shared_borders(&self, piece: usize, edges: &[EdgeId]) -> BTreeMap<usize, f64> {
         let mut shared = BTreeMap::new();
-        for (id, edge) in self.graph.edges() {
+        for id in edges {
             let side = |dart: exurb_graph::Dart| self.piece_of(self.faces.left[dart.index()]);
             let (a, b) = (side(id.forward()), side(id.backward()));
             let other = if a == Some(piece) { b } else { a };
             if (a == Some(piece) || b == Some(piece)) && a != b {
-                *shared.entry(other).or_insert(0.0) += edge.length_m();
+                *shared.entry(other).or_insert(0.0) += self.graph.edge(*id).length_m();
             }
         }
         shared.into_iter().filter_map(|(other, length)| Some((other?, length))).collect()

@@ -136,7 +136,7 @@ fn conflicted(
 /// Does a body keep its distance to the kerb?
 pub(crate) fn is_off_kerb(ground: &Ground<'_>, body: &Body) -> bool {
     let enough_m = body.clearance_m.max(0.0) + 1.0;
-    let clearance_m = ground.kerb.clearance_up_to_m(enough_m, &body.polygon, ground.block);
+    let clearance_m = ground.kerb.clearance_up_to_m(enough_m, &body.polygon);
     clearance_m >= body.clearance_m - SLACK_M
         && (clearance_m >= 0.0 || overlap::outside_m2(&body.polygon, ground.block) <= SLACK_M2)
 }

@@ -55,7 +55,7 @@ impl Default for Settings {
             gap_cost: 0.5,
             turn_cost: 0.5,
             stretch: 0.15,
-            cut: 0.35,
+            cut: 0.25,
             printed_cost: false,
             fit_whole: true,
             local: false,
