@@ -82,9 +82,8 @@ impl Filling {
         let kerb = Kerb::of(&block.polygon);
         let whole: Vec<usize> =
             (0..self.buildings.len()).filter(|i| !self.buildings[*i].is_part).collect();
-        let clearance = |i: &usize| {
-            kerb.clearance_up_to_m(most_pavement_m, &self.buildings[*i].polygon)
-        };
+        let clearance =
+            |i: &usize| kerb.clearance_up_to_m(most_pavement_m, &self.buildings[*i].polygon);
         let least_m = whole.iter().map(clearance).fold(most_pavement_m, f64::min);
         // In whole centimetres, rounded down.
         self.pavement_m = (least_m.max(0.0) * 100.0).floor() / 100.0;

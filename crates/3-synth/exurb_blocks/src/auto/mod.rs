@@ -22,6 +22,7 @@ pub struct Auto;
 /// What is learned for all ways.
 pub struct AllLearned {
     layouts: Learned,
+    /// Blocks that parcels take after: those that are built on.
     library: Library,
 }
 
@@ -39,7 +40,7 @@ impl Operation for Auto {
     fn learn(examples: &[Example], _: &Params, run: &Run) -> Result<AllLearned, Failure> {
         Ok(AllLearned {
             layouts: learn(examples, &Self::CARD, run)?,
-            library: Library::of(examples, run)?,
+            library: Library::of(examples, run)?.built(),
         })
     }
 

@@ -27,6 +27,9 @@ pub struct Situation {
     pub at: Vec2,
 }
 
+/// All example blocks together count as so many that lie like the place in question: where the example has
+/// none of its size, its one large park does not make every large block a park.
+const PRIOR: f64 = 0.5;
 /// How likely a block is that lies this far from the example's, in units of the spread.
 const REACH: f64 = 0.6;
 /// Likeness of distances, in factors of e.
@@ -53,8 +56,13 @@ pub fn draw(
     let all: Vec<&Situation> = example.iter().map(|(_, s)| s).collect();
     let any: Vec<f64> = places.iter().map(|p| likeness(p, &all, &spread)).collect();
     for (kind, models) in kinds {
-        // How often the example's blocks that lie so are of this kind.
-        let share = |i: usize| likeness(&places[i], &models, &spread) / any[i].max(1e-12);
+        // How often the example's blocks that lie so are of this kind; where hardly any lies so, how often
+        // all of them are.
+        let overall = models.len() as f64 / example.len().max(1) as f64;
+        let share = |i: usize| {
+            let like = likeness(&places[i], &models, &spread);
+            (like + PRIOR * overall) / (any[i] + PRIOR)
+        };
         let shares: Vec<f64> = (0..places.len()).map(share).collect();
         let free = |i: &usize| out[*i].is_none();
         // What is left of a block is drawn, too.
@@ -178,6 +186,24 @@ mod tests {
         }
         // Three columns of twenty lie there.
         assert!(near > 60, "{near} of 90");
+    }
+
+    #[test]
+    fn blocks_of_sizes_that_the_example_has_not_are_of_its_kinds_as_often() {
+        let mut example = city(&[7]);
+        for (k, (kind, situation)) in example.iter_mut().enumerate() {
+            let area = if kind.is_some() { 4e4 } else { 1e3 + 10.0 * k as f64 };
+            situation.features = Features::of_area(area);
+        }
+        let places: Vec<Situation> = (0..200)
+            .map(|k| Situation {
+                features: Features::of_area(3e4 + 50.0 * f64::from(k)),
+                ..situation(k, 20.0)
+            })
+            .collect();
+        let kinds = draw(&places, &vec![None; 200], &example, &mut Rng::seed_from_u64(1));
+        let parks = kinds.iter().filter(|k| k.is_some()).count();
+        assert!((1..=40).contains(&parks), "{parks} of 200");
     }
 
     #[test]

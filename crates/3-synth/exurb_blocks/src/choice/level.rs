@@ -24,6 +24,28 @@ const BISECTIONS: usize = 24;
 /// Factors are sought up to this, either way.
 const MOST_FACTOR: f64 = 20.0;
 
+/// What blocks expect together is made up by a factor up to this; beyond it their sizes are not the
+/// example's, and what its like blocks have tells little of them.
+const MOST_UNLIKE: f64 = 3.0;
+
+/// Draws the expectations of ordinary blocks towards the example's coverage where together they expect
+/// less than a third of it: a quarter of large blocks is not empty because the few large ones of the
+/// example are yards and parks. O(blocks).
+pub fn likened(blocks: &mut [Expected], example: f64) {
+    let sum = |of: &dyn Fn(&Expected) -> f64| blocks.iter().map(|b| b.area_m2 * of(b)).sum::<f64>();
+    let (area_m2, own_m2) = (sum(&|_| 1.0), sum(&|b| b.coverage));
+    let least_m2 = area_m2 * example / MOST_UNLIKE;
+    // What each share of the way to the example's coverage adds.
+    let whole_m2 = sum(&|b| if b.is_ordinary { example - b.coverage } else { 0.0 });
+    if own_m2 >= least_m2 || whole_m2 <= 0.0 {
+        return;
+    }
+    let share = ((least_m2 - own_m2) / whole_m2).min(1.0);
+    for block in blocks.iter_mut().filter(|b| b.is_ordinary) {
+        block.coverage += (example - block.coverage) * share;
+    }
+}
+
 /// What all blocks together should build on, in m²: `share` of the way, in factors, from what they expect
 /// to `example`, the example's coverage. One block alone stays nearer to itself than many do: an example
 /// holds all sorts of single blocks.
@@ -81,6 +103,20 @@ mod tests {
         let sum: f64 = many.iter().map(|b| b.area_m2 * raised(b, factor)).sum();
         assert!((sum / total_m2 - 1.0).abs() < 1e-4);
         assert_eq!(raised(&blocks[2], factor), 0.0);
+    }
+
+    #[test]
+    fn blocks_that_expect_next_to_nothing_are_likened_to_the_example() {
+        let block = |coverage| Expected { area_m2: 2e4, coverage, is_ordinary: true };
+        let mut blocks =
+            vec![block(0.0), block(0.02), Expected { is_ordinary: false, ..block(0.1) }];
+        likened(&mut blocks, 0.6);
+        let sum: f64 = blocks.iter().map(|b| b.coverage).sum();
+        assert!((sum - 3.0 * 0.6 / MOST_UNLIKE).abs() < 1e-9, "{sum}");
+        assert!(blocks[0].coverage < blocks[1].coverage && blocks[2].coverage == 0.1);
+        let before: Vec<f64> = blocks.iter().map(|b| b.coverage).collect();
+        likened(&mut blocks, 0.5);
+        assert!(blocks.iter().zip(before).all(|(b, before)| b.coverage == before));
     }
 
     #[test]

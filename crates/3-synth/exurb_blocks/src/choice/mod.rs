@@ -117,8 +117,12 @@ pub fn choose(
         let coverage = if kinds[i].is_none() { field.coverage[i] } else { usual };
         free.then_some(Expected { area_m2, coverage, is_ordinary: kinds[i].is_none() })
     };
-    let expected: Vec<Option<Expected>> = (0..blocks.len()).map(expected).collect();
-    let free: Vec<Expected> = expected.iter().flatten().copied().collect();
+    let mut expected: Vec<Option<Expected>> = (0..blocks.len()).map(expected).collect();
+    let mut free: Vec<Expected> = expected.iter().flatten().copied().collect();
+    if choosing.coverage > 0.0 {
+        level::likened(&mut free, learned.coverage);
+        expected.iter_mut().flatten().zip(&free).for_each(|(block, likened)| *block = *likened);
+    }
     let total_m2 = level::total_m2(&free, learned.coverage, choosing.coverage);
     let factor = level::factor(&free, total_m2);
     for (coverage, expected) in field.coverage.iter_mut().zip(&expected) {
@@ -210,6 +214,10 @@ fn same<'a>(
     serving(site.block).is_none_or(|name| name == source).then_some(found)
 }
 
+/// Layouts built on by less than this share of what is wished for are not asked for: where the example has
+/// no blocks of a size, next to empty ones would be the likest.
+const LEAST_OF_WISH: f64 = 0.3;
+
 /// Like blocks for a site, best first.
 fn asked(
     site: &Site<'_>,
@@ -232,7 +240,8 @@ fn asked(
         ..Query::new(&site.outline, &attributes)
     };
     let serves = |l: &Layout| serving.is_none_or(|name| name == &*l.source);
-    let of_kind = learned.database.query(&query, |l| l.kind == *kind && serves(l));
+    let is_built = |l: &Layout| kind.is_some() || l.coverage >= coverage * LEAST_OF_WISH;
+    let of_kind = learned.database.query(&query, |l| l.kind == *kind && serves(l) && is_built(l));
     if of_kind.is_empty() { learned.database.query(&query, serves) } else { of_kind }
 }
 

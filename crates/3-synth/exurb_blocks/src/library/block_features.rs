@@ -36,6 +36,12 @@ impl Features {
         square.sqrt()
     }
 
+    /// Of a square block of so many m² among others.
+    #[cfg(test)]
+    pub fn of_area(m2: f64) -> Self {
+        Self { values: [trig::ln(m2), trig::ln(m2) / 2.0, 0.0, 0.0, trig::ln(m2)] }
+    }
+
     /// ln of the block's area.
     pub fn ln_area(&self) -> f64 {
         self.values[0]

@@ -58,6 +58,13 @@ impl Library {
         Ok(library)
     }
 
+    /// The same without blocks that are next to empty.
+    pub fn built(&self) -> Self {
+        let is_built = |b: &&ExampleBlock| b.open.is_none() && b.coverage > OPEN_COVERAGE;
+        let blocks: Vec<ExampleBlock> = self.blocks.iter().filter(is_built).cloned().collect();
+        if blocks.is_empty() { self.clone() } else { Self { blocks, ..self.clone() } }
+    }
+
     /// All building samples.
     pub fn buildings(&self) -> impl Iterator<Item = &BuildingSample> {
         self.blocks.iter().flat_map(|b| &b.buildings)
