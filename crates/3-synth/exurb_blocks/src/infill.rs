@@ -8,7 +8,9 @@
 //! do, but each building is turned a little about its middle, so that it lies to the kerb as it lay at home.
 
 use exurb_city::Building;
-use exurb_geom::{Bounds, BoxGrid, GridPoint, Polygon, Rigid, Vec2, overlap, overlay, trig};
+use exurb_geom::{
+    Bounds, BoxGrid, GridPoint, Polygon, Rigid, Vec2, overlap, overlay, polyline, trig,
+};
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
@@ -18,6 +20,7 @@ use crate::lay::{Laid, Spacing, Wish, body, put};
 use crate::library::{OpenNearby, are_near, main_direction};
 use crate::refine::{Body, Ground, SLACK_M2, is_off_kerb};
 use crate::retarget::is_whole;
+use crate::slices::Slices;
 
 /// Buildings that stand by themselves keep this far from those of other poses, in metres.
 const APART_M: f64 = 1.5;
@@ -31,6 +34,8 @@ const MOST_TURN: f64 = 0.25;
 const SIDE_SHARE: f64 = 0.08;
 /// Directions nearer to each other than this are one, in radians.
 const SAME_DIRECTION: f64 = 0.1;
+/// Areas told by slices surely lie above a limit when they lie above so many times that and so many m² more.
+const SURELY: (f64, f64) = (1.5, 3.0);
 /// A building is added where at least this share of it is missing.
 const ADD_SHARE: f64 = 0.6;
 
@@ -144,6 +149,7 @@ fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
 #[derive(Default)]
 struct Bodies {
     all: Vec<Polygon>,
+    slices: Vec<Slices>,
     boxes: RTree<GeomWithData<Rectangle<[f64; 2]>, usize>>,
 }
 
@@ -152,6 +158,7 @@ impl Bodies {
         let Bounds { min, max } = polygon.bounds();
         let around = Rectangle::from_corners([min.x, min.y], [max.x, max.y]);
         self.boxes.insert(GeomWithData::new(around, self.all.len()));
+        self.slices.push(sliced(&polygon));
         self.all.push(polygon);
     }
 
@@ -163,13 +170,22 @@ impl Bodies {
 
     /// Those whose boxes meet a box, in the order they came in.
     fn near(&self, bounds: Bounds) -> Vec<&Polygon> {
+        self.numbers_near(bounds).into_iter().map(|i| &self.all[i]).collect()
+    }
+
+    fn numbers_near(&self, bounds: Bounds) -> Vec<usize> {
         let Bounds { min, max } = bounds;
         let asked = AABB::from_corners([min.x, min.y], [max.x, max.y]);
         let mut found: Vec<usize> =
             self.boxes.locate_in_envelope_intersecting(&asked).map(|b| b.data).collect();
         found.sort_unstable();
-        found.into_iter().map(|i| &self.all[i]).collect()
+        found
     }
+}
+
+fn sliced(polygon: &Polygon) -> Slices {
+    let rings: Vec<Vec<Vec2>> = polygon.rings().map(polyline::to_m).collect();
+    Slices::of(rings.iter().map(|r| &r[..]))
 }
 
 /// Which footprints share walls with others.
@@ -265,12 +281,22 @@ fn fitted(
 ) -> Option<Polygon> {
     let polygon = &wished.polygon;
     let mut in_the_way = Vec::new();
-    for other in bodies.near(polygon.bounds().grown(APART_M)) {
+    let near = bodies.numbers_near(polygon.bounds().grown(APART_M));
+    let most_m2 = if attached { tolerance * polygon.area_m2() } else { SLACK_M2 };
+    if attached && !near.is_empty() {
+        // Most poses lie in others by far: seen quickly.
+        let slices = sliced(polygon);
+        let surely_m2 = most_m2 * SURELY.0 + SURELY.1;
+        if near.iter().any(|i| slices.shared_m2(0.0, &bodies.slices[*i]) > surely_m2) {
+            return None;
+        }
+    }
+    for other in near.into_iter().map(|i| &bodies.all[i]) {
         if !attached && are_near(other, polygon, APART_M) {
             return None;
         }
         let shared_m2 = overlap::shared_m2(polygon, other, SLACK_M2);
-        if shared_m2 > if attached { tolerance * polygon.area_m2() } else { SLACK_M2 } {
+        if shared_m2 > most_m2 {
             return None;
         }
         if shared_m2 > SLACK_M2 {

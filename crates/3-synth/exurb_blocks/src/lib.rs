@@ -32,6 +32,7 @@ pub mod refine;
 pub mod retarget;
 mod ring;
 mod scoped;
+mod slices;
 #[cfg(test)]
 mod test_city;
 pub mod transfer;

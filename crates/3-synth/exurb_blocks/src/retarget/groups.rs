@@ -4,9 +4,9 @@ use exurb_geom::{BoxGrid, GridPoint, Polygon, Rigid, Vec2, polyline};
 
 use super::Settings;
 use super::path::{Path, inverse};
-use super::slices::Slices;
 use crate::library::are_near;
 use crate::ring::{Ring, Side};
+use crate::slices::Slices;
 
 /// How an element behaves when its group is laid out anew (Hartmann et al. 2015, section 3.2; the third
 /// type, empty, is no element of the input).

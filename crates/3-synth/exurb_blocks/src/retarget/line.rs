@@ -7,10 +7,10 @@ use super::Settings;
 use super::groups::{Element, Group, Kind};
 use super::guidance::middle;
 use super::label::{self, Problem};
-use super::slices::Slices;
 use super::spacing::{Wish, spaced};
 use super::synthesize::{Track, Work};
 use crate::motion::Motion;
+use crate::slices::Slices;
 
 /// A fixed element stands where it covers at least this share of its image.
 const FIXED_SHARE: f64 = 0.3;

@@ -29,7 +29,6 @@ mod line;
 mod params;
 mod path;
 mod rows;
-mod slices;
 mod spacing;
 mod synthesize;
 #[cfg(test)]

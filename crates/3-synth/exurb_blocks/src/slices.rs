@@ -1,4 +1,5 @@
-//! Polygons cut into thin slices, to tell quickly how much they share while one slides along a line.
+//! Polygons cut into thin slices, to tell quickly how much they share, also while one slides along a
+//! line.
 
 use exurb_geom::Vec2;
 
