@@ -73,6 +73,20 @@ fn least_of(values: &[f32]) -> f32 {
     lanes.into_iter().fold(rest, f32::min)
 }
 
+/// Writes to each place of `row` the lesser of the sums above it and above the place before; what lies
+/// outside the row above is infinite, as `row` is to begin with. The first places are columns `low_above`
+/// and `low`.
+fn from_above(above: &[f32], low_above: usize, row: &mut [f32], low: usize) {
+    for shift in [0, 1] {
+        // Place k of the row lies below place k + low - shift - low_above.
+        let ahead = (low_above + shift).saturating_sub(low).min(row.len());
+        let behind = low.saturating_sub(low_above + shift).min(above.len());
+        for (sum, above) in row[ahead..].iter_mut().zip(&above[behind..]) {
+            *sum = lesser(*above, *sum);
+        }
+    }
+}
+
 /// First and last column to be looked at in each row.
 struct Band {
     low: Vec<u32>,
@@ -161,19 +175,19 @@ impl Search<'_> {
             offsets.push(offset);
             self.table.resize(offset + high + 1 - low, f32::INFINITY);
             let (before_rows, row) = self.table.split_at_mut(offset);
-            let above_sums = &before_rows[above];
-            let sum_above = |j: usize| {
-                above_sums.get(j.wrapping_sub(above_low)).copied().unwrap_or(f32::INFINITY)
-            };
-            let mut diagonal = sum_above(low.wrapping_sub(1));
+            from_above(&before_rows[above], above_low, row, low);
+            if i == 0 {
+                row[0] = 0.0;
+            }
+            // Columns run on over the start of the outline.
+            let (first, second) = row.split_at_mut((columns.max(low) - low).min(high + 1 - low));
             let mut before = f32::INFINITY;
             let costs = self.costs.row(i);
-            let start = if i == 0 { start as usize } else { usize::MAX };
-            for (j, sum) in (low..).zip(row.iter_mut()) {
-                let up = sum_above(j);
-                let least = if j == start { 0.0 } else { lesser(lesser(diagonal, up), before) };
-                before = least + costs[if j < columns { j } else { j - columns }];
-                (*sum, diagonal) = (before, up);
+            for (part, at) in [(first, low), (second, low.max(columns) - columns)] {
+                for (sum, cost) in part.iter_mut().zip(&costs[at.min(columns)..]) {
+                    before = lesser(*sum, before) + cost;
+                    *sum = before;
+                }
             }
             (above, above_low) = (offset..self.table.len(), low);
         }
