@@ -104,7 +104,7 @@ impl Slices {
 
     /// From where to where along the slices they reach in those up to `depth_m`.
     pub fn span_m(&self, depth_m: f64) -> Option<(f64, f64)> {
-        let last = (depth_m / STEP_M) as i64;
+        let last = (depth_m / STEP_M).min(i64::MAX as f64) as i64;
         let rows = self.first_row..(self.first_row + self.ends.len() as i64).min(last);
         let stretches = rows.flat_map(|row| self.row(row));
         stretches.fold(None, |found: Option<(f64, f64)>, (a, b)| {

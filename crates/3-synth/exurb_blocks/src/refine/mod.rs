@@ -157,6 +157,7 @@ fn settle(
     let mut settled: Vec<bool> =
         (0..bodies.len()).map(|i| fates[i] == Fate::Stays && moved[i].is_none()).collect();
     let mut near = Vec::new();
+    let mut insets = Insets { block: ground.block, made: Vec::new() };
     for i in order {
         boxes.meeting_polygon(place(i), &mut near);
         let neighbours: Vec<Polygon> = near
@@ -166,7 +167,8 @@ fn settle(
             .map(|j| standing(&fates[j], place(j)).clone())
             .collect();
         let least_m2 = area_m2(i) * (1.0 - tolerance);
-        fates[i] = match trimmed(ground, place(i), bodies[i].clearance_m, &neighbours, least_m2) {
+        let body = |i: usize| Body { polygon: place(i).clone(), ..bodies[i] };
+        fates[i] = match trimmed(ground, &mut insets, &body(i), &neighbours, least_m2) {
             Ok(polygon) if polygon == bodies[i].polygon => Fate::Stays,
             Ok(polygon) => Fate::Moved(polygon),
             Err(why) => Fate::Dropped(why),
@@ -179,15 +181,33 @@ fn standing<'a>(fate: &'a Fate, place: &'a Polygon) -> &'a Polygon {
     if let Fate::Moved(polygon) = fate { polygon } else { place }
 }
 
-/// `polygon` less what lies on the street or in a neighbour.
+/// A block less what lies nearer to its kerb than so many metres, for few different distances.
+struct Insets<'a> {
+    block: &'a Polygon,
+    made: Vec<(f64, Vec<Polygon>)>,
+}
+
+impl Insets<'_> {
+    fn by(&mut self, distance_m: f64) -> &[Polygon] {
+        let known = self.made.iter().position(|(by, _)| *by == distance_m);
+        let at = known.unwrap_or_else(|| {
+            self.made.push((distance_m, offset::inset(self.block, distance_m)));
+            self.made.len() - 1
+        });
+        &self.made[at].1
+    }
+}
+
+/// What was wished for less what lies on the street or in a neighbour.
 fn trimmed(
     ground: &Ground<'_>,
-    polygon: &Polygon,
-    clearance_m: f64,
+    insets: &mut Insets<'_>,
+    wished: &Body,
     neighbours: &[Polygon],
     least_m2: f64,
 ) -> Result<Polygon, Why> {
-    let mut out = polygon.clone();
+    let clearance_m = wished.clearance_m;
+    let mut out = wished.polygon.clone();
     if !out.is_valid() {
         out = largest(overlay::repair(&out)).ok_or(Why::Shape)?;
     }
@@ -195,7 +215,7 @@ fn trimmed(
     out = if is_off_kerb(ground, &body) {
         body.polygon
     } else {
-        let free = offset::inset(ground.block, clearance_m.max(0.0));
+        let free = insets.by(clearance_m.max(0.0));
         let inside = free.iter().flat_map(|f| overlay::intersection(&body.polygon, f)).collect();
         largest(inside).filter(|p| p.area_m2() >= least_m2).ok_or(Why::Street)?
     };

@@ -33,6 +33,8 @@ pub struct Element {
     pub rings: Vec<Vec<Vec2>>,
     /// The same in slices.
     pub slices: Slices,
+    /// From where to where it reaches along the path from its middle, what stands behind it counted.
+    pub reach_m: (f64, f64),
     /// Its area in m².
     pub area_m2: f64,
     /// How deep it reaches from the path, in metres.
@@ -159,6 +161,7 @@ pub fn element(
         span_m,
         to_frame,
         rings,
+        reach_m: slices.span_m(f64::INFINITY).unwrap_or((0.0, 0.0)),
         slices,
         area_m2,
         depth_m,

@@ -54,6 +54,8 @@ pub struct Line<'t, 'a> {
 struct Standing {
     /// From where to where it stands at the front, if it does.
     front_m: Option<(f64, f64)>,
+    /// From where to where it stands in all.
+    reach_m: (f64, f64),
     /// As seen from the path.
     slices: Slices,
 }
@@ -214,7 +216,8 @@ impl<'t, 'a> Line<'t, 'a> {
             |rings: &&Vec<Vec<Vec2>>| rings[0].iter().any(|p| path.nearest(*p).1 <= depth_m);
         let seen = |rings: &Vec<Vec<Vec2>>| {
             let slices = self.unrolled(rings);
-            Standing { front_m: slices.span_m(front_m), slices }
+            let reach_m = slices.span_m(f64::INFINITY).unwrap_or((0.0, 0.0));
+            Standing { front_m: slices.span_m(front_m), reach_m, slices }
         };
         work.bodies.iter().filter(is_near).map(seen).collect()
     }
@@ -224,8 +227,10 @@ impl<'t, 'a> Line<'t, 'a> {
     /// alone is not cut, but for a touch that refinement parts.
     fn cut_share(&self, element: &Element, from_m: f64, to_m: f64, work: &Work<'_>) -> Option<f64> {
         let middle_m = (from_m + to_m) / 2.0;
-        let shared = |s: &Standing| element.slices.shared_m2(middle_m, &s.slices);
-        let share = self.standing.iter().map(shared).sum::<f64>() / element.area_m2;
+        let (low, high) = (middle_m + element.reach_m.0, middle_m + element.reach_m.1);
+        let met = self.standing.iter().filter(|s| s.reach_m.0 < high && low < s.reach_m.1);
+        let share = met.map(|s| element.slices.shared_m2(middle_m, &s.slices)).sum::<f64>()
+            / element.area_m2;
         let attached = element.walls.0 || element.walls.1;
         let most = if attached { work.settings.cut } else { work.settings.cut.min(TOUCH_SHARE) };
         let fits = share <= most && work.is_inside(&self.rings(element, from_m, to_m));
