@@ -14,9 +14,10 @@
 //! Departures, each told where it is made: which elements stand at a side, and at a corner; what stands
 //! behind a house stays with it; costs are lengths, so that long and short elements and gaps compare; gaps
 //! of the map cost when they are built on, so that a stretched map does not close them; sequences have
-//! exactly the length of the side; refinement parts what overlaps, where the paper forbids the convex hulls
-//! of earlier sequences; rows inside and single elements are not lost; layouts of few large buildings are
-//! fitted as a whole. Units: metres. Complexity: O(elements · steps) a side, after O(elements · outline)
+//! exactly the length of the side; where the paper forbids the convex hulls of earlier sequences, elements
+//! that share walls may be cut where they meet what stands (`cut`), so that packed blocks stay packed, and
+//! refinement parts the others; what is left of a side becomes one gap, which a further element fills; rows
+//! inside and single elements are not lost; layouts of few large buildings are fitted as a whole. Units: metres. Complexity: O(elements · steps) a side, after O(elements · outline)
 //! for the map.
 
 mod correspondence;
