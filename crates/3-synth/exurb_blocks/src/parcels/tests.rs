@@ -201,3 +201,32 @@ fn a_city_without_streets_is_refused() {
     let failure = erase::<Parcels>().run(&city, &Scope::All, &[], Value::Null, &Run::new(1));
     assert!(failure.unwrap_err().to_string().contains("grow streets first"));
 }
+
+/// Walls that footprints have in common but for the rounding of their ends: lines within a millimetre of
+/// one another cross at many places, and each crossing, rounded, makes others.
+#[test]
+fn lines_that_nearly_coincide_are_noded_to_the_end() {
+    use rand::RngExt;
+    let ground = Polygon::rectangle(GridPoint::m(0.0, 0.0), GridPoint::m(90.0, 70.0));
+    let mut rng = Rng::seed_from_u64(5);
+    for k in 0..200 {
+        let along = exurb_geom::trig::unit(0.37 * f64::from(k));
+        let mut near = |at: f64| {
+            let off = Vec2::new(rng.random_range(-0.001..0.001), rng.random_range(-0.001..0.001));
+            Vec2::new(45.0, 35.0) + along * at + off
+        };
+        let mut lines = vec![vec![near(-80.0), near(80.0)]];
+        for i in 0..9 {
+            let at = -30.0 + 5.0 * f64::from(i);
+            lines.push(vec![near(at), near(at + 22.0)]);
+        }
+        let tiling = super::tiling::Tiling::of(&ground, &lines, |_| 0);
+        let mut faces = super::tiling::Tiling::of(&ground, &lines, |p| {
+            u32::from(along.perp_dot(p - Vec2::new(45.0, 35.0)) > 0.0)
+        });
+        faces.join(|piece| piece.area_m2 < 10.0);
+        for (polygon, _) in tiling.polygons().into_iter().chain(faces.polygons()) {
+            assert!(polygon.is_valid(), "{k}");
+        }
+    }
+}

@@ -9,6 +9,9 @@ use std::collections::BTreeMap;
 use exurb_geom::{GridPoint, Polygon, RowSides, Vec2, polyline};
 use exurb_graph::{EdgeId, FaceId, Faces, Graph, NodeId, noding};
 
+/// Borders that run along walls for long cross them at every bend: they are noded in so many rounds at most.
+const MOST_ROUNDS: usize = 64;
+
 /// Faces of a cut ground, grouped into pieces.
 pub struct Tiling {
     graph: Graph<(), ()>,
@@ -41,7 +44,8 @@ impl Tiling {
         let cuts = lines.iter().map(|l| polyline::round(l)).filter(|l| l.len() > 1);
         let linework =
             closed.chain(cuts).map(|points| noding::Line { points, level: 0, data: () }).collect();
-        let graph = graph_of(noding::node(linework, noding::Options::default()));
+        let options = noding::Options { max_rounds: MOST_ROUNDS, ..noding::Options::default() };
+        let graph = graph_of(noding::node(linework, options));
         let faces = Faces::of(&graph, |_| true);
         let inside = RowSides::new(ground);
         let owners: Vec<Option<u32>> = faces

@@ -113,7 +113,7 @@ fn packed_block() -> (Vec<GridPoint>, Vec<Polygon>) {
 #[test]
 fn closed_rows_stay_closed() {
     let (old, houses) = packed_block();
-    let settings = Settings::default();
+    let settings = Settings { cut: 0.35, ..Settings::default() };
     let source = Source::of(&old, houses.clone(), &[], &settings);
     let outline = ring(&[(-30., -10.), (100., 0.), (130., 165.), (0., 162.)]);
     let domain = Polygon::new(outline.clone(), vec![]).expect("has area");
