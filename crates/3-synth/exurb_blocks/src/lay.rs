@@ -17,7 +17,7 @@ pub struct Wish<'a, T> {
     pub motion: Motion,
 }
 
-/// How close things may come.
+/// How close things may come, and what they may lose for it.
 #[derive(Clone, Copy, Debug)]
 pub struct Spacing {
     /// Distance between kerb and footprints in metres, unless they stood nearer in the example.

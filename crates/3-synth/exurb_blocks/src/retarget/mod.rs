@@ -17,8 +17,8 @@
 //! exactly the length of the side; where the paper forbids the convex hulls of earlier sequences, elements
 //! that share walls may be cut where they meet what stands (`cut`), so that packed blocks stay packed, and
 //! refinement parts the others; what is left of a side becomes one gap, which a further element fills; rows
-//! inside and single elements are not lost; layouts of few large buildings are fitted as a whole. Units: metres. Complexity: O(elements · steps) a side, after O(elements · outline)
-//! for the map.
+//! inside and single elements are not lost; layouts of few large buildings are fitted as a whole. Units:
+//! metres. Complexity: O(elements · steps) a side, after O(elements · outline) for the map.
 
 mod correspondence;
 mod editor;
