@@ -73,8 +73,7 @@ impl Tiling {
         // The edges around each piece; those that come to lie inside stay listed.
         let mut edges = vec![Vec::new(); self.pieces.len()];
         for (id, _) in self.graph.edges() {
-            let side = |dart: exurb_graph::Dart| self.piece_of(self.faces.left[dart.index()]);
-            let (a, b) = (side(id.forward()), side(id.backward()));
+            let (a, b) = self.beside(id);
             for piece in [a, b.filter(|_| a != b)].into_iter().flatten() {
                 edges[piece].push(id);
             }
@@ -106,8 +105,8 @@ impl Tiling {
     /// The polygons of the pieces, with owner and frontage, by piece.
     pub fn polygons(&self) -> Vec<(Polygon, Piece)> {
         let border = |id: EdgeId| {
-            let side = |dart: exurb_graph::Dart| self.piece_of(self.faces.left[dart.index()]);
-            side(id.forward()) != side(id.backward())
+            let (a, b) = self.beside(id);
+            a != b
         };
         let mut found: Vec<(usize, Polygon)> = Faces::of(&self.graph, border)
             .list
@@ -126,12 +125,17 @@ impl Tiling {
         self.piece[face?.0 as usize]
     }
 
+    /// The pieces on both sides of an edge.
+    fn beside(&self, id: EdgeId) -> (Option<usize>, Option<usize>) {
+        let side = |dart: exurb_graph::Dart| self.piece_of(self.faces.left[dart.index()]);
+        (side(id.forward()), side(id.backward()))
+    }
+
     /// Length of the border with each neighbouring piece, of the edges around a piece.
     fn shared_borders(&self, piece: usize, edges: &[EdgeId]) -> BTreeMap<usize, f64> {
         let mut shared = BTreeMap::new();
         for id in edges {
-            let side = |dart: exurb_graph::Dart| self.piece_of(self.faces.left[dart.index()]);
-            let (a, b) = (side(id.forward()), side(id.backward()));
+            let (a, b) = self.beside(*id);
             let other = if a == Some(piece) { b } else { a };
             if (a == Some(piece) || b == Some(piece)) && a != b {
                 *shared.entry(other).or_insert(0.0) += self.graph.edge(*id).length_m();
