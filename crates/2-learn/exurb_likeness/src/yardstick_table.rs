@@ -2,7 +2,8 @@
 //! copies and streets by rule score against each other.
 //!
 //! Every city's densest 5 km square is cut in two; the west part is the example, the east part is
-//! held out, the other cities' west parts are the floor.
+//! held out, the other cities' west parts are the floor. Cities differ in how much they mind a change,
+//! so each row says by how much it lies below the row before it in the same city, and how sure that is.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -31,9 +32,10 @@ impl Table {
         }
         let families: Vec<&str> = Family::STREETS.iter().map(|f| f.name()).collect();
         out += &format!(
-            "\n{:<32} {:>13} {:>6}  {}\n",
+            "\n{:<32} {:>13} {:>15} {:>6}  {}\n",
             "candidate",
             "TOTAL (sd)",
+            "lower by (se)",
             "CORE",
             families.join(" ")
         );
@@ -44,9 +46,20 @@ impl Table {
             };
             let families: Vec<String> = Family::STREETS.iter().map(family).collect();
             let total = format!("{:.2} ({:.2})", row.total[0], row.total[1]);
+            let lower = row.lower.map_or(String::new(), |l| format!("{:.2} ({:.2})", l.by, l.error));
             let core = figure(Some(row.core));
-            out +=
-                &format!("{:<32} {total:>13} {core:>6}  {}\n", row.candidate, families.join(" "));
+            out += &format!(
+                "{:<32} {total:>13} {lower:>15} {core:>6}  {}\n",
+                row.candidate,
+                families.join(" ")
+            );
+        }
+        let higher = |pair: &&[Row]| pair[1].lower.is_some_and(|l| l.by < 0.0);
+        for pair in self.rows.windows(2).filter(higher) {
+            let (row, before) = (pair[1].candidate, pair[0].candidate);
+            let apart = pair[1].lower.is_some_and(|l| l.by < -SURE * l.error);
+            let surely = if apart { "" } else { ", within chance" };
+            out += &format!("out of order: {row} above {before}{surely}\n");
         }
         out += "\ninformative measures:";
         for (name, count) in &self.informative {
@@ -63,11 +76,37 @@ pub struct Row {
     pub candidate: &'static str,
     /// Mean and standard deviation of TOTAL.
     pub total: [f64; 2],
+    /// How far the row lies below the one before it; `None` for the first, and of one city.
+    pub lower: Option<Lower>,
     /// Mean of CORE.
     pub core: f64,
     /// Mean by family.
     pub families: BTreeMap<&'static str, f64>,
 }
+
+/// A difference of TOTAL between two rows, city by city.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Lower {
+    /// Mean over cities; below 0 when the rows stand the other way round.
+    pub by: f64,
+    /// Standard error of that mean.
+    pub error: f64,
+}
+
+impl Lower {
+    /// Of a row below the one before it, TOTAL of both in the same cities in the same order.
+    fn of(before: &[Option<f64>], row: &[Option<f64>]) -> Option<Self> {
+        let both = before.iter().zip(row).filter_map(|(b, r)| Some((*b)? - (*r)?));
+        let steps: Vec<f64> = both.collect();
+        let by = mean(steps.iter().copied())?;
+        let spread = steps.iter().map(|s| (s - by) * (s - by)).sum::<f64>();
+        let n = steps.len() as f64;
+        (n > 1.0).then(|| Self { by, error: (spread / (n - 1.0) / n).sqrt() })
+    }
+}
+
+/// Rows are out of order for sure when they are so by this many standard errors.
+const SURE: f64 = 2.0;
 
 /// Mean distances of one measure over all cities.
 #[derive(Clone, Debug, Serialize)]
@@ -202,13 +241,16 @@ fn column(
 }
 
 fn summary(columns: &[Column], names: Vec<String>) -> Table {
-    let mut rows = vec![row("A itself", columns.iter().map(|c| &c.itself).collect())];
+    let mut kinds = vec![("A itself", of_each(columns, |c| std::slice::from_ref(&c.itself)))];
     for (i, (name, _)) in MADE.iter().enumerate() {
         if i == 4 {
-            let others = columns.iter().flat_map(|c| &c.others).collect();
-            rows.push(row("another real city", others));
+            kinds.push(("another real city", of_each(columns, |c| &c.others)));
         }
-        rows.push(row(name, columns.iter().flat_map(|c| &c.made[i]).collect()));
+        kinds.push((name, of_each(columns, |c| &c.made[i])));
+    }
+    let mut rows: Vec<Row> = kinds.iter().map(|(name, cards)| row(name, cards)).collect();
+    for (row, pair) in rows[1..].iter_mut().zip(kinds.windows(2)) {
+        row.lower = Lower::of(&totals(&pair[0].1), &totals(&pair[1].1));
     }
     let grids = || columns.iter().flat_map(|c| &c.made[MADE.len() - 1]);
     let distances = STREETS.iter().enumerate().map(|(m, measure)| Distances {
@@ -236,7 +278,20 @@ fn farther(marks: &Marks) -> Vec<f64> {
     marks.floors.iter().flatten().map(share).collect()
 }
 
-fn row(candidate: &'static str, cards: Vec<&Scorecard>) -> Row {
+/// The scorecards of one kind of candidate, by city.
+type ByCity<'a> = Vec<&'a [Scorecard]>;
+
+fn of_each<'a>(columns: &'a [Column], cards: impl Fn(&'a Column) -> &'a [Scorecard]) -> ByCity<'a> {
+    columns.iter().map(cards).collect()
+}
+
+/// Mean TOTAL by city.
+fn totals(cards: &ByCity) -> Vec<Option<f64>> {
+    cards.iter().map(|own| mean(own.iter().filter_map(|c| c.total))).collect()
+}
+
+fn row(candidate: &'static str, cards: &ByCity) -> Row {
+    let cards: Vec<&Scorecard> = cards.iter().copied().flatten().collect();
     let totals: Vec<f64> = cards.iter().filter_map(|c| c.total).collect();
     let total = mean(totals.iter().copied()).unwrap_or_default();
     let variance = mean(totals.iter().map(|t| (t - total) * (t - total))).unwrap_or_default();
@@ -246,6 +301,7 @@ fn row(candidate: &'static str, cards: Vec<&Scorecard>) -> Row {
     Row {
         candidate,
         total: [total, variance.sqrt()],
+        lower: None,
         core: mean(cards.iter().filter_map(|c| c.core)).unwrap_or_default(),
         families: Family::STREETS.into_iter().filter_map(family).collect(),
     }
