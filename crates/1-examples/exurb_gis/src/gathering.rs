@@ -8,9 +8,9 @@ use exurb_city::{
 };
 use exurb_geom::{Bounds, Crs, Frame, GridPoint, LonLat, Polygon, Vec2, overlay};
 
-use crate::Error;
 use crate::geometry::{Geometry, Position};
 use crate::recognise::{Attributes, Kind, recognise};
+use crate::{Error, border};
 
 /// Rows on their way to a city. Their positions are what their file says until
 /// [`Gathering::place`] or [`Gathering::leave_placeless`] is called.
@@ -165,6 +165,8 @@ impl Gathering {
             }
         }
         draft.extent = extent(&draft);
+        let lines: Vec<&[GridPoint]> = draft.streets.ways.iter().map(|w| &w.line[..]).collect();
+        draft.broken_ends = border::cut_ends(&lines);
         draft.metadata.name = self.name.as_str().into();
         draft.metadata.attribution = std::mem::take(&mut self.attribution);
         let source = |source| Error::Draft { file: self.file.clone(), source };

@@ -49,6 +49,8 @@ impl Place<'_> {
 pub struct Reference {
     /// Name of the example.
     pub name: String,
+    /// Name of the city that is its held-out part; `None` where that is a part of the example itself.
+    pub held_out_name: Option<String>,
     /// Size of all windows in metres.
     pub size: Vec2,
     /// Ceilings and floors.
@@ -114,9 +116,32 @@ pub struct Likeness {
     pub notes: Vec<String>,
 }
 
-/// The largest window that all of these cities hold, halved from west to east where `split`.
-pub fn common_size<'a>(cities: impl IntoIterator<Item = &'a City>) -> Vec2 {
-    cities.into_iter().map(|city| city.target.bounds().size()).fold(Vec2::INFINITY, Vec2::min)
+/// The size of all windows of a comparison: that of the held-out part, or the largest that every one
+/// holds where another is smaller by over 2 %. With a note where the held-out part is cut to it.
+pub fn common_size<'a>(
+    part: &Place<'a>,
+    held_out: &Place,
+    others: impl IntoIterator<Item = &'a City>,
+) -> (Vec2, Option<String>) {
+    let wanted = held_out.window.size();
+    let others = others.into_iter().map(|city| (city, city.target.bounds().size()));
+    let all: Vec<(&City, Vec2)> = others.chain([(part.city, part.window.size())]).collect();
+    let size = all.iter().fold(wanted, |least, (_, size)| least.min(*size));
+    let about_equal = size.cmpge(wanted * (1.0 - windows::SAME_SHARE));
+    let size = Vec2::select(about_equal, wanted, size);
+    let is_least = |(_, own): &&(&City, Vec2)| (own.cmple(size) & !about_equal).any();
+    let names: Vec<&str> = all.iter().filter(is_least).map(|(c, _)| &*c.metadata.name).collect();
+    let note = (!names.is_empty()).then(|| {
+        format!(
+            "all windows were cut to {:.0} m x {:.0} m, the most that {} holds; the held-out part has {:.0} m x {:.0} m",
+            size.x,
+            size.y,
+            names.join(" and "),
+            wanted.x,
+            wanted.y
+        )
+    });
+    (size, note)
 }
 
 /// The parts of an example without a held-out one: west and east half of its densest square, north
@@ -159,12 +184,13 @@ impl Reference {
         let floor: Vec<Side> =
             others.iter().map(Subject::side).chain(of_panel.iter().map(|c| c.side())).collect();
         let names = cities.iter().map(|c| c.metadata.name.to_string());
-        let held_out_size = held_out.window.size();
+        let held_out_name = (!std::ptr::eq(held_out.city, example))
+            .then(|| held_out.city.metadata.name.to_string());
         let held_out = held_out.cut(size);
-        let mut notes = overlapping(parts, held_out);
+        let mut notes: Vec<String> = overlapping(parts, held_out).into_iter().collect();
+        notes.extend(cities.iter().filter_map(|c| no_other_city(window(c), held_out)));
         let Subject { network, measured, patches } = Subject::of(held_out, panel, seed, HELD_OUT);
         notes.extend(thin(&network, "the held-out part"));
-        notes.extend(cut(size, held_out_size));
         let real = own.iter().map(|s| &s.measured).chain(floor.iter().map(|s| s.measured));
         let held_out = HeldOut::new(measured, patches, real, seed);
         let sides: Vec<Side> = own.iter().map(Subject::side).collect();
@@ -177,8 +203,10 @@ impl Reference {
         let measures = [&STREETS[..], &BUILT].concat();
         let yardstick = Yardstick::new(held_out, &measures, &sides, &floor);
         notes.extend(left_out(&yardstick));
+        notes.extend(untold(&yardstick));
         Self {
             name: example.metadata.name.to_string(),
+            held_out_name,
             size,
             yardstick,
             part: own.into_iter().next().expect("an example has a part"),
@@ -213,13 +241,26 @@ impl Reference {
         let scorecard = self.yardstick.score(candidate.side()).without(&unjudged);
         let copy_rates =
             COPY_RADII_M.map(|radius_m| self.original.copy_rate(&candidate.network, radius_m));
-        if candidate.measured.fingerprint.is_empty() {
-            notes.push("the candidate has no blocks: measures of blocks score -1".to_owned());
+        let lacking =
+            scorecard.measures.iter().filter(|s| s.distance.is_none() && s.score.is_some());
+        let lacking: Vec<&str> = lacking.map(|s| s.measure.name).collect();
+        if !lacking.is_empty() {
+            notes.push(format!(
+                "the candidate has too few values in its window for {}: they score -1",
+                lacking.join(", ")
+            ));
         }
         if copy_rates.iter().flatten().any(|rate| *rate > 0.99) {
             notes.push("the candidate is a copy of the example: scores near 1 mean nothing".into());
         }
         let example_share = example_share(city, &self.name);
+        if self.held_out_name.is_none() && example_share.is_some_and(|share| share > 0.0) {
+            notes.push(format!(
+                "the candidate was made from {}, and what it is compared with is a half of that, so it \
+                 was not unseen: make it from one part and give the other as --held-out",
+                self.name
+            ));
+        }
         notes.extend(made_from_others(city, &self.name, example_share));
         Likeness { scorecard, copy_rates, example_share, candidate, notes }
     }
@@ -263,18 +304,6 @@ fn thin(network: &Network, whose: &str) -> Vec<String> {
     }
 }
 
-/// A note that windows were cut, when the held-out part is larger than what is compared.
-fn cut(size: Vec2, held_out: Vec2) -> Option<String> {
-    let is_cut = (held_out - size).max_element() > 0.02 * held_out.max_element();
-    is_cut.then(|| {
-        format!(
-            "all windows were cut to {:.0} m x {:.0} m, the largest that every one of them holds; the \
-             held-out part has {:.0} m x {:.0} m",
-            size.x, size.y, held_out.x, held_out.y
-        )
-    })
-}
-
 /// A note on the measures of streets and blocks that the held-out part is too small for.
 fn left_out(yardstick: &Yardstick) -> Option<String> {
     let absent = STREETS.iter().filter(|m| !yardstick.held_out().has(m)).map(|m| m.name);
@@ -283,14 +312,34 @@ fn left_out(yardstick: &Yardstick) -> Option<String> {
         .then(|| format!("left out, too few values in windows of this size: {}", absent.join(", ")))
 }
 
-/// A note for every part that shares ground with the held-out one.
-fn overlapping(parts: &[Place], held_out: Place) -> Vec<String> {
-    let place = |p: &Place| {
+/// A note where no measure separates, so that there is no score.
+fn untold(yardstick: &Yardstick) -> Option<String> {
+    (yardstick.informative() == 0).then(|| {
+        "there is no score: in no measure of streets and blocks does the example's own other part lie \
+         clearly nearer than the other cities"
+            .to_owned()
+    })
+}
+
+/// A note where a part shares ground with the held-out one.
+fn overlapping(parts: &[Place], held_out: Place) -> Option<String> {
+    parts.iter().any(|part| share_ground(*part, held_out)).then(|| {
+        "the example's part and the held-out part overlap: the held-out part was not unseen".into()
+    })
+}
+
+/// A note where a city of the floor shares ground with the held-out part.
+fn no_other_city(place: Place, held_out: Place) -> Option<String> {
+    share_ground(place, held_out).then(|| {
+        let name = &place.city.metadata.name;
+        format!("{name} is part of the floor and overlaps the held-out part: it is no other city")
+    })
+}
+
+fn share_ground(a: Place, b: Place) -> bool {
+    let extent = |p: Place| {
         let (sw, ne) = (p.city.frame.unproject(p.window.min), p.city.frame.unproject(p.window.max));
         [sw.lon, sw.lat, ne.lon, ne.lat]
     };
-    let other = place(&held_out);
-    let shared = |p: &&Place| panel::shared_area(place(p), other) > OVERLAP;
-    let note = "the example's part and the held-out part overlap: the held-out part was not unseen";
-    parts.iter().filter(shared).map(|_| note.to_owned()).take(1).collect()
+    panel::shared_area(extent(a), extent(b)) > OVERLAP
 }

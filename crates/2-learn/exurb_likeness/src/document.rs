@@ -22,6 +22,9 @@ const WORST: usize = 3;
 pub struct Document {
     /// Name of the example.
     pub example: String,
+    /// Name of its held-out part, which stands for it in every measure; `None` where that is a half of
+    /// the example itself.
+    pub held_out: Option<String>,
     /// Mean of the families; `None` where no measure is informative.
     pub total: Option<f64>,
     /// The same over the core measures.
@@ -69,7 +72,7 @@ pub struct MeasureDocument {
     pub distance: Option<f64>,
     /// Kolmogorov-Smirnov distance of the candidate, of measures that are distributions.
     pub ks: Option<f64>,
-    /// The score, unclipped.
+    /// The score, unclipped; `None` where the measure does not separate.
     pub score: Option<f64>,
     /// Does the measure separate here?
     pub informative: bool,
@@ -87,6 +90,7 @@ impl Document {
         let worst = worst(card, WORST).into_iter().map(|s| sentence(s, candidate, held_out));
         Self {
             example: reference.name.clone(),
+            held_out: reference.held_out_name.clone(),
             total: card.total.map(round),
             core: card.core.map(round),
             built: card.built.map(round),
@@ -114,8 +118,6 @@ impl Document {
         for (name, m) in self.measures.iter().filter(|(_, m)| here(m)) {
             let cell = |value: Option<f64>| value.map_or("-".to_owned(), |v| format!("{v:.2}"));
             let value = |value: Option<f64>| value.map_or("-".to_owned(), |v| figure(v, ""));
-            let score =
-                if m.informative { cell(m.score) } else { "(".to_owned() + &cell(m.score) + ")" };
             let core = if m.core { "*" } else { " " };
             let _ = writeln!(
                 out,
@@ -126,11 +128,19 @@ impl Document {
                 cell(m.distance),
                 cell(m.ceiling),
                 cell(m.floor),
-                score
+                cell(m.score)
             );
         }
         out.push_str(&self.summary());
         out
+    }
+
+    /// What stands for the example in the comparison, in words.
+    pub fn held_out_words(&self) -> String {
+        match &self.held_out {
+            Some(name) => format!("its held-out part, {name}"),
+            None => "one half of it, held out".to_owned(),
+        }
     }
 
     fn summary(&self) -> String {
@@ -139,13 +149,15 @@ impl Document {
         let families: Vec<String> =
             known.map(|(name, score)| format!("{name} {}", cell(*score))).collect();
         let mut out = format!(
-            "* core measure, (…) not informative here: {} of {} of streets and blocks count\n\n\
+            "* core measure, no score: not informative here; {} of {} of streets and blocks count\n\
+             example: {}; figures of both are medians\n\n\
              TOTAL {}   CORE {}   BUILT {}   {}\n\
              copied          {} of junctions with what lies within 150 m, {} within 300 m; \
              {} of the street length was laid from this example\n\
-             windows         {:.0} x {:.0} m; floor of {} cities\n",
+             windows         {:.0} x {:.0} m; floor: {}\n",
             self.informative,
             STREETS.len(),
+            self.held_out_words(),
             cell(self.total),
             cell(self.core),
             cell(self.built),
@@ -155,7 +167,7 @@ impl Document {
             cell(self.example_share),
             self.window_m[0],
             self.window_m[1],
-            self.floor.len(),
+            self.floor.join(", "),
         );
         for sentence in &self.worst {
             let _ = writeln!(out, "worst           {sentence}");
@@ -186,6 +198,12 @@ impl MeasureDocument {
             score: score.score.map(round),
             informative: score.informative,
         }
+    }
+
+    /// What the measure of this name measures, without the explanation; empty for a name that is none.
+    pub fn title(name: &str) -> &'static str {
+        let title = crate::measures::find(name).map_or("", |m| words(m).title);
+        title.split_once(':').map_or(title, |(title, _)| title)
     }
 
     /// A value of this measure with its unit.

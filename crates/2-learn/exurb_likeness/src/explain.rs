@@ -23,12 +23,15 @@ fn quantile(measured: &Measured, measure: &Measure, share: f64) -> Option<f64> {
     Some(if words(measure).is_log { exurb_geom::trig::pow(10.0, value) } else { value })
 }
 
-/// A figure with its unit: three digits.
+/// A figure with its unit: three digits, two of what is less than 1.
 pub fn figure(value: f64, unit: &str) -> String {
     let digits = match value.abs() {
         v if v >= 99.5 => 0,
         v if v >= 9.95 => 1,
-        _ => 2,
+        v if v >= 0.0995 => 2,
+        v if v >= 0.00995 => 3,
+        v if v >= 0.00005 => 4,
+        _ => 0,
     };
     let space = if unit.is_empty() || unit.starts_with('°') { "" } else { " " };
     format!("{value:.digits$}{space}{unit}")
@@ -40,7 +43,7 @@ pub fn sentence(score: &Score, candidate: &Measured, held_out: &Measured) -> Str
     let words = words(measure);
     let subject = words.subject;
     let Some(distance) = score.distance else {
-        return format!("{subject}: the new city has none that can be measured.");
+        return format!("{}: the new city has too few to tell.", words.title);
     };
     match typical(candidate, measure).zip(typical(held_out, measure)) {
         Some((own, wanted)) if differ(own, wanted) => {
@@ -62,7 +65,7 @@ pub fn sentence(score: &Score, candidate: &Measured, held_out: &Measured) -> Str
 
 /// Do two typical values differ visibly?
 fn differ(own: f64, wanted: f64) -> bool {
-    (own - wanted).abs() > 0.03 * wanted.abs().max(1e-9)
+    (own - wanted).abs() > 0.03 * wanted.abs().max(1e-9) && figure(own, "") != figure(wanted, "")
 }
 
 /// Typical values agree, so the spread does not.
@@ -72,6 +75,9 @@ fn spread_sentence(measure: &Measure, candidate: &Measured, held_out: &Measured)
         let [low, high] = [0.1, 0.9].map(|share| quantile(m, measure, share).unwrap_or_default());
         format!("{} to {}", figure(low, ""), figure(high, unit))
     };
+    if range(candidate, "") == range(held_out, "") {
+        return format!("{}: alike in general, but the rare values differ.", words.title);
+    }
     format!(
         "{} vary differently: four in five lie within {} instead of {}.",
         words.subject,
@@ -80,11 +86,14 @@ fn spread_sentence(measure: &Measure, candidate: &Measured, held_out: &Measured)
     )
 }
 
-/// The informative measures with the lowest scores, worst first.
+/// A measure that scores as much is not named as one of the worst.
+const LIKE: f64 = 0.9;
+
+/// The informative measures with the lowest scores, worst first; none that is like the example.
 pub fn worst(card: &Scorecard, count: usize) -> Vec<&Score> {
-    let mut scored: Vec<&Score> =
-        card.measures.iter().filter(|s| s.informative && s.score.is_some()).collect();
     let score = |s: &Score| s.score.unwrap_or_default();
+    let scored = card.measures.iter().filter(|s| s.informative && s.score.is_some());
+    let mut scored: Vec<&Score> = scored.filter(|s| score(s) < LIKE).collect();
     scored.sort_by(|a, b| score(a).total_cmp(&score(b)));
     scored.truncate(count);
     scored

@@ -82,7 +82,8 @@ pub struct Score {
     pub floor: Option<f64>,
     /// Distance of the candidate; `None` where it, or the held-out part, lacks what is measured.
     pub distance: Option<f64>,
-    /// The score, unclipped; -1 where the candidate lacks what the held-out part has.
+    /// The score, unclipped; -1 where the candidate lacks what the held-out part has. `None` where the
+    /// measure does not separate: between marks that hardly differ, a score would mean nothing.
     pub score: Option<f64>,
     /// Does the measure separate here? Others do not count.
     pub informative: bool,
@@ -159,9 +160,10 @@ impl Yardstick {
             let lacks = distance.is_none() && self.held_out.has(&marks.measure);
             let of = |d: f64| Some((floor? - d) / (floor? - ceiling?));
             let score = match distance {
-                Some(d) => of(d).filter(|s| s.is_finite()),
+                Some(d) => of(d),
                 None => lacks.then_some(-1.0),
             };
+            let score = score.filter(|_| informative);
             Score { measure: marks.measure, ceiling, floor, distance, score, informative }
         };
         Scorecard::of(self.marks.iter().zip(distances).map(score).collect())

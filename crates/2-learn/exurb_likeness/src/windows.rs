@@ -4,7 +4,7 @@ use exurb_city::{City, Part, densest_square};
 use exurb_geom::{Bounds, Vec2};
 
 /// A city whose extent differs from the wanted size by no more than this share counts whole.
-const SAME_SHARE: f64 = 0.02;
+pub const SAME_SHARE: f64 = 0.02;
 
 /// Both halves of a city's densest square.
 pub fn halves(city: &City, [first, second]: [Part; 2]) -> [Bounds; 2] {

@@ -46,7 +46,8 @@ impl Table {
             };
             let families: Vec<String> = Family::STREETS.iter().map(family).collect();
             let total = format!("{:.2} ({:.2})", row.total[0], row.total[1]);
-            let lower = row.lower.map_or(String::new(), |l| format!("{:.2} ({:.2})", l.by, l.error));
+            let lower =
+                row.lower.map_or(String::new(), |l| format!("{:.2} ({:.2})", l.by, l.error));
             let core = figure(Some(row.core));
             out += &format!(
                 "{:<32} {total:>13} {lower:>15} {core:>6}  {}\n",

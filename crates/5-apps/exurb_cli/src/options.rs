@@ -22,7 +22,7 @@ pub struct RunOptions {
     /// Print the result as JSON on standard output
     #[arg(long)]
     pub json: bool,
-    /// Print nothing but errors and the JSON asked for
+    /// Print no progress and no summary, only errors and what was asked for
     #[arg(long, short)]
     pub quiet: bool,
 }

@@ -1,4 +1,4 @@
-//! Distributions overlaid: the new city, the example's unseen part, the example's own part.
+//! Distributions overlaid: the new city, the example's held-out part, the example's own part.
 
 use std::fmt::Write;
 
@@ -17,8 +17,8 @@ const WIDTH: f64 = 300.0;
 const HEIGHT: f64 = 110.0;
 /// Bins of a histogram, each smoothed with its neighbours.
 const BINS: usize = 40;
-/// Characters of a long unit.
-const LONG_UNIT: usize = 14;
+/// Radius of a rose; three stand beside each other.
+const ROSE: f64 = 49.0;
 /// Blocks drawn of a fingerprint.
 const DOTS: usize = 300;
 
@@ -28,7 +28,7 @@ type Sets<'a> = [(&'a Measured, &'static str); 3];
 fn sets<'a>(column: &Column<'a>) -> Sets<'a> {
     [
         (&column.reference.part.measured, "part"),
-        (column.reference.yardstick.held_out().measured(), "unseen"),
+        (column.reference.yardstick.held_out().measured(), "held-out"),
         (&column.likeness.candidate.measured, "new"),
     ]
 }
@@ -52,13 +52,22 @@ pub fn chart(column: &Column, score: &Score) -> Option<String> {
     };
     let faded = if score.informative { "" } else { " faded" };
     Some(format!(
-        "<figure class=\"chart{faded}\"><figcaption><b>{}</b> <code>{}</code> {}</figcaption>\
+        "<figure class=\"chart{faded}\"><figcaption><b>{}</b> <code>{}</code>{}</figcaption>\
          <svg viewBox=\"0 0 {WIDTH} {}\">{drawing}</svg></figure>\n",
-        text(words(measure).subject),
+        text(&title(words(measure))),
         measure.name,
-        html::figure(score.score),
+        score.score.map_or(String::new(), |_| format!(" score {}", html::figure(score.score))),
         HEIGHT + 14.0,
     ))
+}
+
+/// What is measured, with its unit; degrees stand at the axis.
+fn title(words: Words) -> String {
+    let scale = if words.is_log { ", logarithmic" } else { "" };
+    match words.unit {
+        "" | "°" => words.title.to_owned() + scale,
+        unit => format!("{} ({unit}{scale})", words.title),
+    }
 }
 
 /// Shares by value, as lines.
@@ -81,7 +90,7 @@ fn histograms(measure: &Measure, sets: &Sets) -> Option<String> {
         let points: Vec<String> =
             curve.iter().enumerate().map(|(i, v)| format!("{:.1},{:.1}", x(i), y(*v))).collect();
         let points = points.join(" ");
-        if *class == "unseen" {
+        if *class == "held-out" {
             let _ = write!(
                 out,
                 "<polygon class=\"{class}\" points=\"{:.1},{HEIGHT} {points} {:.1},{HEIGHT}\"/>",
@@ -113,12 +122,10 @@ fn bins(sample: &Sample, low: f64, high: f64) -> Vec<f64> {
 fn axis(low: f64, high: f64, words: Words) -> String {
     let mut out = format!("<path class=\"axis\" d=\"M0 {HEIGHT}H{WIDTH}\"/>");
     let places = [(0.0, "start"), (0.5, "middle"), (1.0, "end")];
-    // A long unit takes the room of the middle.
-    let has_room = |share: &f64| *share != 0.5 || words.unit.len() < LONG_UNIT;
-    for (share, anchor) in places.into_iter().filter(|(share, _)| has_room(share)) {
+    for (share, anchor) in places {
         let value = low + (high - low) * share;
         let value = if words.is_log { trig::pow(10.0, value) } else { value };
-        let label = text(&figure(value, if share == 1.0 { words.unit } else { "" }));
+        let label = figure(value, if words.unit == "°" { words.unit } else { "" });
         let _ = write!(
             out,
             "<text x=\"{:.0}\" y=\"{:.0}\" text-anchor=\"{anchor}\">{label}</text>",
@@ -168,7 +175,7 @@ fn roses(sets: &Sets) -> Option<String> {
             .map(|(i, share)| {
                 let angle = (i as f64 + 0.5) * 5.0_f64.to_radians();
                 // By area, as the eye sees it.
-                let at = trig::unit(angle) * (HEIGHT / 2.0 * (share / top).sqrt());
+                let at = trig::unit(angle) * (ROSE * (share / top).sqrt());
                 format!("{:.1},{:.1}", middle + at.x, HEIGHT / 2.0 - at.y)
             })
             .collect();
@@ -190,6 +197,6 @@ fn dots(sets: &Sets) -> Option<String> {
                 write!(out, "<circle class=\"{class}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"1.6\"/>");
         }
     }
-    let words = Words { subject: "", more: "", less: "", unit: "m²", is_log: true };
+    let words = Words { title: "", subject: "", more: "", less: "", unit: "m²", is_log: true };
     (!out.is_empty()).then(|| out + &axis(low, high, words))
 }

@@ -36,10 +36,11 @@ pub fn maps(report: &Report) -> Result<String, Error> {
 fn row(candidate: &City, column: &Column, pixels: f64) -> Result<String, Error> {
     let reference = column.reference;
     let name = text(&column.document.example);
+    let held_out = text(&column.document.held_out_words());
     let shown = [
         ("the new city".to_owned(), candidate, column.likeness.candidate.network.window),
         (format!("{name}: the example"), column.example, reference.part.network.window),
-        (format!("{name}: its unseen part"), column.held_out, reference.held_out.window),
+        (format!("{name}: {held_out}"), column.held_out, reference.held_out.window),
     ];
     let size = reference.size;
     let width_px = (pixels * size.x / size.y).sqrt().clamp(16.0, MOST_WIDTH_PX) as u32;
@@ -48,7 +49,9 @@ fn row(candidate: &City, column: &Column, pixels: f64) -> Result<String, Error> 
         let data = picture(city, window, width_px)?;
         out += &format!(
             "<figure><img alt=\"{title}\" src=\"data:image/png;base64,{data}\">\
-             <figcaption>{title}</figcaption></figure>\n"
+             <figcaption>{title}; {:.0} m × {:.0} m</figcaption></figure>\n",
+            window.size().x,
+            window.size().y
         );
     }
     Ok(out + "</div>\n")

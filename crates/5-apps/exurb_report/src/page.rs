@@ -42,7 +42,7 @@ fn verdict(column: &Column) -> String {
     };
     let mut out = format!("<p class=\"lead\">{}</p>\n<div class=\"cards\">", reading(column));
     out += &card("TOTAL", document.total, "streets and blocks, all measures");
-    out += &card("CORE", document.core, "the 14 measures that separate cities best");
+    out += &card("CORE", document.core, "those measures of them that tell cities apart best");
     if document.built.is_some() {
         out += &card("BUILT", document.built, "buildings and parcels");
     }
@@ -72,29 +72,34 @@ fn reading(column: &Column) -> String {
     let name = text(&column.document.example);
     let said = match column.document.total {
         None => "Nothing can be said: no measure separates this city from others here.",
-        Some(t) if t >= 0.7 => "Statistically it is like unseen real fabric of the same city.",
+        Some(t) if t >= 0.7 => "Statistically it is like real fabric of the same city.",
         Some(t) if t >= 0.5 => {
             "It is clearly the right city, though not quite like its real fabric."
         }
         Some(t) if t >= 0.3 => {
-            "The style is partly learned: about as much as published learned generators."
+            "The style is partly learned: it is nearer than another real city, but not by much."
         }
         Some(t) if t >= 0.0 => {
-            "The style is hardly learned: it is little nearer than another real city."
+            "The style is hardly learned: it is about as far as another real city."
         }
         Some(_) => "It is farther from the example than another real city.",
     };
     format!(
-        "Compared with an unseen part of <b>{name}</b>. {said} 1 is as near as the city's own other \
-         part, 0 as far as another city; {} of 30 measures of streets and blocks tell something here.",
+        "Compared with <b>{name}</b>: {}. {said} 1 is as near as the city's own other part, 0 as far as \
+         another city; {} of 30 measures of streets and blocks tell something here.",
+        text(&column.document.held_out_words()),
         column.document.informative
     )
 }
 
 fn section(column: &Column, named: bool) -> String {
     let of = if named { format!(": {}", text(&column.document.example)) } else { String::new() };
-    let mut out = format!("<h2>What differs most{of}</h2>\n<ol class=\"worst\">\n");
+    let mut out = format!("<h2>What differs most{of}</h2>\n");
     let worst = explain::worst(&column.likeness.scorecard, WORST);
+    if worst.is_empty() {
+        out += "<p>No measure that tells something here differs notably.</p>\n";
+    }
+    out += "<ol class=\"worst\">\n";
     for (score, sentence) in worst.iter().zip(&column.document.worst) {
         let chart = charts::chart(column, score).unwrap_or_default();
         out += &format!("<li><p>{}</p>{chart}</li>\n", text(sentence));
@@ -108,11 +113,13 @@ fn section(column: &Column, named: bool) -> String {
     }
     out += &format!(
         "<h2>Distributions{of}</h2>\n<p class=\"legend\"><i class=\"new\"></i> the new city \
-         <i class=\"unseen\"></i> the example's unseen part <i class=\"part\"></i> the example; pale \
-         charts do not count here. The figure is the score.</p>\n<div class=\"charts\">\n{}</div>\n",
+         <i class=\"held-out\"></i> the example: {} <i class=\"part\"></i> the example: the part shown \
+         beside it</p>\n<p>Upwards: how frequent. Pale charts have no score: they do not count here.</p>\n\
+         <div class=\"charts\">\n{}</div>\n",
+        text(&column.document.held_out_words()),
         charts::charts(column)
     );
-    out += &format!("<h2>All scores{of}</h2>\n{}", scores::table(column));
+    out += &format!("<h2>All scores{of}</h2>\n<div class=\"wide\">{}</div>", scores::table(column));
     let floor: Vec<String> = column.document.floor.iter().map(|name| text(name)).collect();
     let [width, height] = column.document.window_m;
     out + &format!(

@@ -7,9 +7,11 @@ use exurb_likeness::document::MeasureDocument;
 use crate::Column;
 use crate::html::{figure, text};
 
-/// Length of a scale in pixels: from worse than another city (-1) to better than the ceiling (1.5).
+/// Length of a scale in pixels: from worse than another city (-1) to better than the ceiling (1.5), with
+/// room for half a dot at both ends.
 const LENGTH_PX: f64 = 150.0;
 const ENDS: (f64, f64) = (-1.0, 1.5);
+const DOT_PX: f64 = 4.5;
 
 /// The table of one example.
 pub fn table(column: &Column) -> String {
@@ -36,10 +38,11 @@ pub fn table(column: &Column) -> String {
         }
         let _ = writeln!(
             out,
-            "<tr{}><td>{}<code>{name}</code></td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>\
+            "<tr{}><td>{}{} <code>{name}</code></td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>\
              <td>{}</td><td>{}</td><td>{}</td></tr>",
             if m.informative { "" } else { " class=\"faded\"" },
             if m.core { "<b title=\"core measure\">•</b> " } else { "" },
+            text(MeasureDocument::title(name)),
             text(&MeasureDocument::with_unit(name, m.example)),
             text(&MeasureDocument::with_unit(name, m.candidate)),
             figure(m.distance),
@@ -54,14 +57,15 @@ pub fn table(column: &Column) -> String {
 
 /// A score on its scale.
 fn scale(score: Option<f64>) -> String {
-    let place = |v: f64| LENGTH_PX * (v.clamp(ENDS.0, ENDS.1) - ENDS.0) / (ENDS.1 - ENDS.0);
+    let share = |v: f64| (v.clamp(ENDS.0, ENDS.1) - ENDS.0) / (ENDS.1 - ENDS.0);
+    let place = |v: f64| DOT_PX + (LENGTH_PX - 2.0 * DOT_PX) * share(v);
     let dot = score.map_or(String::new(), |score| {
         let class = match score {
             s if s >= 0.7 => "good",
             s if s >= 0.3 => "fair",
             _ => "poor",
         };
-        format!("<circle class=\"{class}\" cx=\"{:.1}\" cy=\"7\" r=\"4.5\"/>", place(score))
+        format!("<circle class=\"{class}\" cx=\"{:.1}\" cy=\"7\" r=\"{DOT_PX}\"/>", place(score))
     });
     format!(
         "<svg class=\"scale\" width=\"{LENGTH_PX}\" height=\"14\"><path d=\"M0 7H{LENGTH_PX}M{0:.1} 1v12M{1:.1} 1v12\"/>{dot}</svg>",

@@ -17,22 +17,22 @@ const APART_M: f64 = 400.0;
 /// Two rows of patches; nothing where the windows are smaller than a patch.
 pub fn tiles(column: &Column) -> Option<String> {
     let candidate = &column.likeness.candidate;
-    let (new, unseen) =
+    let (new, held_out) =
         (candidate.patches.as_ref()?, column.reference.yardstick.held_out().patches()?);
     let row = |title: &str, network: &Network, patches: &Patches, scores: &[f64]| {
         let squares = most(network, patches, scores).into_iter();
         let drawn: String = squares.map(|square| drawing(network, square)).collect();
         format!("<div class=\"tiles\"><p>{title}</p>{drawn}</div>\n")
     };
-    let of_new = telling(new, unseen);
-    let of_unseen = telling(unseen, new);
+    let of_new = telling(new, held_out);
+    let of_held_out = telling(held_out, new);
     Some(
         row("The new city where it is least like the example", &candidate.network, new, &of_new)
             + &row(
-                "The example's unseen part where it is least like the new city",
+                "The example's held-out part where it is least like the new city",
                 &column.reference.held_out,
-                unseen,
-                &of_unseen,
+                held_out,
+                &of_held_out,
             ),
     )
 }

@@ -76,6 +76,10 @@ pub fn run(matches: &ArgMatches) -> Result<(), Problem> {
 }
 
 fn compare(city: &Path, options: &Options, panel: &Panel, run: &Run) -> Result<String, Problem> {
+    let inputs = [&options.with, &options.held_out, &options.floor].into_iter().flatten();
+    let inputs: Vec<&Path> = inputs.map(PathBuf::as_path).chain([city]).collect();
+    writable(options.report.as_deref(), "--report", &["html", "htm"], &inputs)?;
+    writable(options.map.as_deref(), "--map", &["gpkg"], &inputs)?;
     let candidate = read(city, run)?;
     let examples = read_all(&options.with, run)?;
     let held_out = read_all(&options.held_out, run)?;
@@ -132,6 +136,29 @@ fn compare(city: &Path, options: &Options, panel: &Panel, run: &Run) -> Result<S
     Ok(to_text(&candidate, &documents, &info))
 }
 
+/// Refuses a file to write that has another ending, or is one of those to read: a page or a map of
+/// differences is no city, so that what it replaces would be lost.
+fn writable(
+    file: Option<&Path>,
+    option: &str,
+    endings: &[&str],
+    inputs: &[&Path],
+) -> Result<(), Problem> {
+    let Some(file) = file else { return Ok(()) };
+    let ending = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let is_file = |f: &Path| f.metadata().map_or(true, |there| there.is_file());
+    if is_file(file) && !endings.contains(&&*ending) {
+        let wanted = endings[0];
+        return Err(Problem::usage(format!("{option} {}: name a .{wanted} file", file.display())));
+    }
+    let place = |f: &Path| std::fs::canonicalize(f).ok();
+    if place(file).is_some_and(|to| inputs.iter().any(|from| place(from).as_ref() == Some(&to))) {
+        let message = "it is one of the cities compared and would be lost; name another file";
+        return Err(Problem::usage(format!("{option} {}: {message}", file.display())));
+    }
+    Ok(())
+}
+
 /// The layers of the map of differences.
 fn themes(candidate: &Network, reference: &Reference) -> [Theme; 2] {
     let example = [&reference.part.network, &reference.held_out];
@@ -173,7 +200,7 @@ fn themes(candidate: &Network, reference: &Reference) -> [Theme; 2] {
     ]
 }
 
-/// The example, its parts and the floor, all windows as large as the smallest of them allows.
+/// The example, its parts and the floor, all windows of one size.
 fn reference(
     candidate: &City,
     example: &City,
@@ -193,10 +220,11 @@ fn reference(
             (Place { city: example, window }, unseen)
         }
     };
-    let windows = parts.window.size().min(unseen.window.size());
-    let size = windows.min(common_size(floor.iter().chain([candidate])));
+    let (size, note) = common_size(&parts, &unseen, floor.iter().chain([candidate]));
     let floor = if floor.is_empty() { Floor::Panel } else { Floor::Cities(floor) };
-    Reference::new(example, &[parts], unseen, floor, panel, size, SEED)
+    let mut reference = Reference::new(example, &[parts], unseen, floor, panel, size, SEED);
+    reference.notes.extend(note);
+    reference
 }
 
 fn read(file: &Path, run: &Run) -> Result<City, Problem> {

@@ -52,8 +52,10 @@ fn the_document_has_the_keys_of_the_contract() {
             let value = &measure[key];
             assert!(value.is_null() || value.as_f64().unwrap().is_finite(), "{name} {key}");
         }
-        assert!(measure["informative"].is_boolean(), "{name}");
+        // Between marks that do not separate, a score would mean nothing.
+        assert!(measure["informative"].as_bool().unwrap() || measure["score"].is_null(), "{name}");
     }
+    assert!(notes(&found).contains("was not unseen"), "{}", notes(&found));
     assert!(found["laws"]["crossings_without_node"]["pass"].as_bool().unwrap());
     assert!(found["likeness_gates"]["dead_end_share"].is_object());
     assert!(found["example_share"].as_f64().unwrap() > 0.5);
@@ -95,6 +97,10 @@ fn other_cities_can_be_the_floor() {
     ];
     let found = document(folder.path(), &args);
     assert_eq!(found["floor"].as_array().unwrap().len(), 2);
+    assert!(!notes(&found).contains("is no other city"), "{}", notes(&found));
+    let own = document(folder.path(), &["builtin:suburb", "--with", EXAMPLE, "--floor", EXAMPLE]);
+    assert!(notes(&own).contains("is no other city"), "{}", notes(&own));
+    assert!(own["total"].is_null() == notes(&own).contains("there is no score"), "{own}");
 }
 
 #[test]
@@ -125,6 +131,39 @@ fn the_page_and_the_map_are_whole_or_not_there() {
     let nowhere = ["city.gpkg", "--with", EXAMPLE, "--report", "nowhere/page.html"];
     compared(folder.path(), &nowhere).ends(1).says("nowhere");
     assert_eq!(listing(folder.path()), before);
+}
+
+#[test]
+fn what_is_written_replaces_no_city() {
+    let folder = tempdir().unwrap();
+    grown(folder.path(), EXAMPLE, "1000x1000", "city.gpkg");
+    let before = fs::read(folder.path().join("city.gpkg")).unwrap();
+    for (args, words) in [
+        (["city.gpkg", "--with", EXAMPLE, "--report", "city.gpkg"], "name a .html file"),
+        (["city.gpkg", "--with", EXAMPLE, "--map", "city.gpkg"], "would be lost"),
+        ([EXAMPLE, "--with", "city.gpkg", "--map", "./city.gpkg"], "would be lost"),
+        (["city.gpkg", "--with", EXAMPLE, "--map", "map.html"], "name a .gpkg file"),
+    ] {
+        compared(folder.path(), &args).ends(2).says(words);
+    }
+    assert_eq!(listing(folder.path()), ["city.gpkg"]);
+    assert_eq!(fs::read(folder.path().join("city.gpkg")).unwrap(), before);
+}
+
+/// A window that is smaller by a few metres counts whole and does not cut the others.
+#[test]
+fn about_the_same_size_is_the_same_size() {
+    let folder = tempdir().unwrap();
+    grown(folder.path(), EXAMPLE, "1000x1000", "part.gpkg");
+    let window = |size: &str| {
+        grown(folder.path(), EXAMPLE, size, "city.gpkg");
+        let args = ["city.gpkg", "--with", EXAMPLE, "--held-out", "part.gpkg"];
+        let found = document(folder.path(), &args);
+        let is_noted = notes(&found).contains("the most that city holds");
+        ([0, 1].map(|i| found["window_m"][i].as_f64().unwrap().round()), is_noted)
+    };
+    assert_eq!(window("985x1000"), ([1000.0, 1000.0], false));
+    assert_eq!(window("900x1000"), ([900.0, 1000.0], true));
 }
 
 #[test]
@@ -166,9 +205,12 @@ fn a_city_without_blocks_is_judged_by_what_it_has() {
     let text = format!(r#"{{"type":"FeatureCollection","features":[{}]}}"#, streets.join(","));
     fs::write(folder.path().join("rows.geojson"), text).unwrap();
     let found = document(folder.path(), &["rows.geojson", "--with", EXAMPLE]);
-    assert!(notes(&found).contains("no blocks"), "{}", notes(&found));
-    assert_eq!(found["measures"]["block_area"]["score"], -1.0);
-    assert!(found["measures"]["seg_length"]["score"].is_number());
+    let lacking = "the candidate has too few values in its window for";
+    assert!(notes(&found).contains(lacking), "{}", notes(&found));
+    assert!(notes(&found).contains("reach_500m"), "{}", notes(&found));
+    assert_eq!(found["measures"]["reach_500m"]["score"], -1.0);
+    assert!(found["measures"]["block_area"]["distance"].is_null());
+    assert!(found["measures"]["seg_length"]["distance"].is_number());
 }
 
 #[test]
