@@ -10,6 +10,37 @@ use crate::shell::{self, Outcome, cargo, output_of, root, target};
 const LIKENESS: &str = "docs/likeness.md";
 const BLOCKS: &str = "docs/blocks.md";
 
+/// The shared maps that hold a square of 5 km, for a second yardstick.
+const WIDE: [&str; 27] = [
+    "aleppo",
+    "auckland",
+    "baltimore_county_suburb_east",
+    "baltimore_harbor",
+    "barcelona_eixample_santmarti",
+    "bucaramanga",
+    "cairo",
+    "campo_grande",
+    "canberra",
+    "columbus",
+    "davis_california",
+    "douala",
+    "heidelberg_roads",
+    "liege",
+    "los_angeles_paramount",
+    "madrid_center",
+    "malta_valletta",
+    "maribor",
+    "monaco_menton_east",
+    "paris_center",
+    "portland_central",
+    "porto_alegre",
+    "quito",
+    "salt_lake_city",
+    "san_francisco",
+    "tel_aviv",
+    "wuhan",
+];
+
 /// Runs the protocol with these options over the shared maps, or over those whose names follow
 /// `--maps`. Without options the table goes into docs/likeness.md.
 pub fn run(options: &[&str]) -> Outcome {
@@ -51,18 +82,28 @@ pub fn blocks(options: &[&str]) -> Outcome {
     if options.is_empty() { write(BLOCKS, "protocol", table.trim_end()) } else { Ok(()) }
 }
 
-/// Scores spoilt copies, other cities and streets by rule against the cities of the panel.
+/// Scores spoilt copies, other cities and streets by rule against the cities of the panel, and once more
+/// against all maps that are wide enough, of which the page shows the rows alone.
 pub fn yardstick() -> Outcome {
-    let maps = panel_maps("CITIES: [&str; 9] = [")?;
-    if maps.iter().any(|map| !map.exists()) {
+    let panel = panel_maps("CITIES: [&str; 9] = [")?;
+    let wide: Vec<PathBuf> = WIDE.iter().map(|name| shared_map(name)).collect();
+    if panel.iter().chain(&wide).any(|map| !map.exists()) {
         println!("skipped: no shared data");
         return Ok(());
     }
     shell::run(&mut cargo("build --release --locked --bin exurb"))?;
-    let mut exurb = std::process::Command::new(target().join("release/exurb"));
-    let table = output_of(exurb.args(["compare", "--quiet", "--yardstick"]).args(maps))?;
-    println!("{table}");
-    write(LIKENESS, "yardstick", &format!("```text\n{}\n```", table.trim_end()))
+    let table = |maps: Vec<PathBuf>| {
+        let mut exurb = std::process::Command::new(target().join("release/exurb"));
+        output_of(exurb.args(["compare", "--quiet", "--yardstick"]).args(maps))
+    };
+    let fenced = |table: &str| format!("```text\n{}\n```", table.trim_end());
+    let of_panel = table(panel)?;
+    println!("{of_panel}");
+    write(LIKENESS, "yardstick", &fenced(&of_panel))?;
+    let of_wide = table(wide)?;
+    println!("{of_wide}");
+    let rows = of_wide.split("\n\n").nth(1).ok_or("the yardstick has no table of rows")?;
+    write(LIKENESS, "wide yardstick", &fenced(rows))
 }
 
 /// Measures the cities and towns of the panel and writes what `exurb compare` has built in.
@@ -85,10 +126,13 @@ fn panel_maps(list: &str) -> Outcome<Vec<PathBuf>> {
 /// The maps that a list in a source file names, so that each list stands in one place.
 fn listed(source: &str, list: &str) -> Outcome<Vec<PathBuf>> {
     let source = std::fs::read_to_string(root().join(source)).map_err(|e| e.to_string())?;
-    let folder = root().join("../shared/data/osm");
     let names = source.split_once(list).and_then(|(_, rest)| rest.split_once(']'));
     let names = names.map_or("", |(names, _)| names).split('"').skip(1).step_by(2);
-    Ok(names.map(|name| folder.join(format!("{name}.osm.pbf"))).collect())
+    Ok(names.map(shared_map).collect())
+}
+
+fn shared_map(name: &str) -> PathBuf {
+    root().join("../shared/data/osm").join(format!("{name}.osm.pbf"))
 }
 
 fn maps() -> Outcome<Vec<PathBuf>> {

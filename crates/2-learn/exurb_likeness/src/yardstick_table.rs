@@ -307,3 +307,55 @@ fn row(candidate: &'static str, cards: &ByCity) -> Row {
         families: Family::STREETS.into_iter().filter_map(family).collect(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rows with these TOTALs in three cities.
+    fn table_of(totals: &[(&'static str, [f64; 3])]) -> Table {
+        let of_city = |t: [f64; 3]| t.map(Some);
+        let lower =
+            |i: usize| Lower::of(&of_city(totals[i.checked_sub(1)?].1), &of_city(totals[i].1));
+        let row = |(i, (candidate, own)): (usize, &(&'static str, [f64; 3]))| Row {
+            candidate,
+            total: [own.iter().sum::<f64>() / 3.0, 0.0],
+            lower: lower(i),
+            core: 0.0,
+            families: BTreeMap::new(),
+        };
+        let rows = totals.iter().enumerate().map(row).collect();
+        Table { rows, distances: Vec::new(), informative: Vec::new() }
+    }
+
+    #[test]
+    fn rows_out_of_order_are_named_and_whether_chance_can_be_why() {
+        let text = table_of(&[
+            ("first", [0.5, 0.6, 0.7]),
+            ("perhaps above", [0.8, 0.5, 0.7]),
+            ("surely above", [1.0, 0.7, 0.9]),
+            ("below", [0.1, 0.2, 0.3]),
+        ])
+        .to_text();
+        let said: Vec<&str> = text.lines().filter(|l| l.starts_with("out of order")).collect();
+        let wanted = [
+            "out of order: perhaps above above first, within chance",
+            "out of order: surely above above perhaps above",
+        ];
+        assert_eq!(said, wanted);
+    }
+
+    /// Steps 0.1, 0.2, 0.6: mean 0.3, deviations -0.2, -0.1, 0.3, so variance 0.07, error √(0.07 / 3).
+    #[test]
+    fn a_difference_is_taken_city_by_city() {
+        let lower = Lower::of(
+            &[Some(0.5), Some(0.9), None, Some(0.7)],
+            &[Some(0.4), Some(0.7), Some(0.1), Some(0.1)],
+        )
+        .unwrap();
+        assert!(
+            (lower.by - 0.3).abs() < 1e-12 && (lower.error - (0.07_f64 / 3.0).sqrt()).abs() < 1e-12
+        );
+        assert!(Lower::of(&[Some(0.5)], &[Some(0.4)]).is_none(), "one city has no spread");
+    }
+}

@@ -225,6 +225,36 @@ fn a_city_without_streets_cannot_be_compared() {
     compared(folder.path(), &[EXAMPLE]).ends(2).says("--with");
 }
 
+/// What stands between two cities and a regular grid: copies that are spoilt more score less, and each
+/// row says how far it lies below the one before.
+#[test]
+fn the_yardstick_puts_spoilt_copies_in_order() {
+    let folder = tempdir().unwrap();
+    let args = ["--yardstick", EXAMPLE, "builtin:suburb", "--json"];
+    let found = compared(folder.path(), &args).ends(0).json();
+    let rows = found["rows"].as_array().unwrap();
+    let total = |i: usize| rows[i]["total"][0].as_f64().unwrap();
+    assert_eq!((rows.len(), total(0)), (9, 1.0));
+    let names: Vec<&str> = rows.iter().map(|r| r["candidate"].as_str().unwrap()).collect();
+    let at = |words: &str| names.iter().position(|n| n.contains(words)).unwrap();
+    for what in ["node noise", "of segments removed"] {
+        let [little, much] = match what {
+            "node noise" => ["10 m", "25 m"],
+            _ => ["10 %", "30 %"],
+        };
+        let [little, much] = [little, much].map(|much| total(at(&format!("{much} {what}"))));
+        assert!(1.0 > little && little > much, "{what}: {little} {much}");
+    }
+    assert!(total(0) > total(at("regular grid")), "{found}");
+    // With two cities there is no third as the floor of another real city.
+    let (step, other) = (|i: usize| rows[i]["lower"]["by"].as_f64(), at("another real city"));
+    assert_eq!((step(0), step(other), step(other + 1)), (None, None, None));
+    for i in (1..rows.len()).filter(|i| *i != other && *i != other + 1) {
+        let apart = total(i - 1) - total(i);
+        assert!((step(i).unwrap() - apart).abs() < 1e-9, "both cities have a TOTAL: {found}");
+    }
+}
+
 /// The same streets in metres without a place, and delivered once in each direction.
 #[test]
 fn metres_and_streets_delivered_twice_measure_as_the_city_does() {
