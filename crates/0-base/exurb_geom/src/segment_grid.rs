@@ -48,6 +48,18 @@ impl SegmentGrid {
     /// Fills `out` with the segments that may come within `margin_mm` of segment `a b` (which may be
     /// a point): every one that does, and of the others only such whose boxes do. Ascending, each once.
     pub fn near(&self, a: GridPoint, b: GridPoint, margin_mm: i32, out: &mut Vec<u32>) {
+        self.near_of(a, b, margin_mm, |_| true, out);
+    }
+
+    /// As [`SegmentGrid::near`], of the segments that are `wanted` alone.
+    pub fn near_of(
+        &self,
+        a: GridPoint,
+        b: GridPoint,
+        margin_mm: i32,
+        wanted: impl Fn(u32) -> bool,
+        out: &mut Vec<u32>,
+    ) {
         out.clear();
         let (lo_x, hi_x) = (a.x.min(b.x) - margin_mm, a.x.max(b.x) + margin_mm);
         let (lo_y, hi_y) = (a.y.min(b.y) - margin_mm, a.y.max(b.y) + margin_mm);
@@ -58,7 +70,7 @@ impl SegmentGrid {
                     || hi_x < c.x.min(d.x)
                     || c.y.max(d.y) < lo_y
                     || hi_y < c.y.min(d.y);
-                if !apart {
+                if !apart && wanted(*id) {
                     out.push(*id);
                 }
             }

@@ -143,14 +143,15 @@ fn find_cuts<T>(lines: &[Noded<T>], snap_m: f64) -> Vec<Vec<Cut>> {
             continue;
         }
         let (a, b) = index.segment(i as u32);
-        index.near(a, b, margin_mm, &mut near);
+        let is_open = |j: u32| {
+            let other = &lines[owners[j as usize].0 as usize];
+            let seen_from_there = other.changed && j as usize <= i;
+            !seen_from_there && lines[l].line.level == other.line.level
+        };
+        index.near_of(a, b, margin_mm, is_open, &mut near);
         for &j in &near {
             let (m, t) = owners[j as usize];
-            let (m, t) = (m as usize, t as usize);
-            let seen_from_there = lines[m].changed && j as usize <= i;
-            if !seen_from_there && lines[l].line.level == lines[m].line.level {
-                cut_pair(&mut cuts, lines, (l, s), (m, t), snap_m);
-            }
+            cut_pair(&mut cuts, lines, (l, s), (m as usize, t as usize), snap_m);
         }
     }
     for list in &mut cuts {

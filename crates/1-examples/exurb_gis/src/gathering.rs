@@ -166,7 +166,15 @@ impl Gathering {
         }
         draft.extent = extent(&draft);
         let lines: Vec<&[GridPoint]> = draft.streets.ways.iter().map(|w| &w.line[..]).collect();
-        draft.broken_ends = border::cut_ends(&lines);
+        draft.broken_ends = border::cut_ends(&lines, if placeless { 0.0 } else { center[1] });
+        if !draft.broken_ends.is_empty() {
+            self.warnings.push(format!(
+                "`{}`: {} ends of streets that stand in straight rows on the outside were taken as cut \
+                 off there, not as dead ends",
+                self.file,
+                draft.broken_ends.len()
+            ));
+        }
         draft.metadata.name = self.name.as_str().into();
         draft.metadata.attribution = std::mem::take(&mut self.attribution);
         let source = |source| Error::Draft { file: self.file.clone(), source };

@@ -18,8 +18,8 @@
 //! (`building:levels`, `levels`, `NB_ETAGES`, ...), `min_height`, `roof:shape`, use; zoning. Of lists,
 //! as OSMnx writes them, the first item counts; GDAL's `other_tags` is read as its columns. Where a
 //! file has a column `highway`, a line that leaves it empty is no street. Such files do not say where they
-//! are complete: that is taken to be the rectangle around everything, and ends of streets that stand in a
-//! straight row on the outside, whichever way it is turned, were cut there and are no dead ends.
+//! are complete: that is taken to be the rectangle around everything, and ends of streets that stand in
+//! straight rows along a rectangle, whichever way it is turned, were cut there and are no dead ends.
 //!
 //! A file's coordinate system may be any with an EPSG code or a common projection. A plane system
 //! in metres beyond that keeps shape and scale and loses its place, with a warning; others are

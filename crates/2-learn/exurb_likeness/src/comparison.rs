@@ -1,13 +1,14 @@
 //! Comparing a candidate with its example: which windows, against which floor, with what result.
 
 use exurb_city::{City, Origin, Part};
-use exurb_geom::{Bounds, Vec2};
+use exurb_geom::{Bounds, Frame, Vec2};
 use exurb_measure::Network;
 
 use crate::copying::Original;
 use crate::measures::{BUILT, Family, STREETS};
 use crate::panel::{self, Panel, PanelCity};
 use crate::patches::{CANDIDATE, HELD_OUT, Patches};
+use crate::words::words;
 use crate::{HeldOut, Measured, Scorecard, Side, Yardstick, windows};
 
 /// Radii at which copies are looked for, in metres.
@@ -119,8 +120,8 @@ pub struct Likeness {
 /// The size of all windows of a comparison: that of the held-out part, or the largest that every one
 /// holds where another is smaller by over 2 %. With a note where the held-out part is cut to it.
 pub fn common_size<'a>(
-    part: &Place<'a>,
-    held_out: &Place,
+    part: Place<'a>,
+    held_out: Place,
     others: impl IntoIterator<Item = &'a City>,
 ) -> (Vec2, Option<String>) {
     let wanted = held_out.window.size();
@@ -130,10 +131,14 @@ pub fn common_size<'a>(
     let about_equal = size.cmpge(wanted * (1.0 - windows::SAME_SHARE));
     let size = Vec2::select(about_equal, wanted, size);
     let is_least = |(_, own): &&(&City, Vec2)| (own.cmple(size) & !about_equal).any();
-    let names: Vec<&str> = all.iter().filter(is_least).map(|(c, _)| &*c.metadata.name).collect();
+    let least = all.iter().filter(is_least).map(|(city, _)| &*city.metadata.name);
+    let names: std::collections::BTreeSet<&str> = least.collect();
     let note = (!names.is_empty()).then(|| {
+        let hold = if names.len() > 1 { "hold" } else { "holds" };
+        let names: Vec<&str> = names.into_iter().collect();
         format!(
-            "all windows were cut to {:.0} m x {:.0} m, the most that {} holds; the held-out part has {:.0} m x {:.0} m",
+            "all windows were cut to {:.0} m x {:.0} m, the most that {} {hold}; the held-out part has \
+             {:.0} m x {:.0} m",
             size.x,
             size.y,
             names.join(" and "),
@@ -175,8 +180,9 @@ impl Reference {
             Floor::Panel => &[],
         };
         let window = |city| Place { city, window: windows::of_size(city, size) };
+        let elsewhere: Vec<Place> = cities.iter().map(window).collect();
         let others: Vec<Subject> =
-            cities.iter().map(|c| Subject::of(window(c), panel, seed, CANDIDATE)).collect();
+            elsewhere.iter().map(|p| Subject::of(*p, panel, seed, CANDIDATE)).collect();
         let of_panel = match floor {
             Floor::Panel => panel.others(&[example, held_out.city]),
             Floor::Cities(_) => Vec::new(),
@@ -188,7 +194,7 @@ impl Reference {
             .then(|| held_out.city.metadata.name.to_string());
         let held_out = held_out.cut(size);
         let mut notes: Vec<String> = overlapping(parts, held_out).into_iter().collect();
-        notes.extend(cities.iter().filter_map(|c| no_other_city(window(c), held_out)));
+        notes.extend(elsewhere.iter().filter_map(|p| no_other_city(*p, parts, held_out)));
         let Subject { network, measured, patches } = Subject::of(held_out, panel, seed, HELD_OUT);
         notes.extend(thin(&network, "the held-out part"));
         let real = own.iter().map(|s| &s.measured).chain(floor.iter().map(|s| s.measured));
@@ -243,11 +249,11 @@ impl Reference {
             COPY_RADII_M.map(|radius_m| self.original.copy_rate(&candidate.network, radius_m));
         let lacking =
             scorecard.measures.iter().filter(|s| s.distance.is_none() && s.score.is_some());
-        let lacking: Vec<&str> = lacking.map(|s| s.measure.name).collect();
+        let lacking: Vec<&str> = lacking.map(|s| words(&s.measure).title).collect();
         if !lacking.is_empty() {
             notes.push(format!(
-                "the candidate has too few values in its window for {}: they score -1",
-                lacking.join(", ")
+                "the candidate has too few of these in its window, which score -1: {}",
+                lacking.join("; ")
             ));
         }
         if copy_rates.iter().flatten().any(|rate| *rate > 0.99) {
@@ -328,15 +334,21 @@ fn overlapping(parts: &[Place], held_out: Place) -> Option<String> {
     })
 }
 
-/// A note where a city of the floor shares ground with the held-out part.
-fn no_other_city(place: Place, held_out: Place) -> Option<String> {
-    share_ground(place, held_out).then(|| {
+/// A note where a city of the floor shares ground with the held-out part or with the example's own.
+fn no_other_city(place: Place, own: &[Place], held_out: Place) -> Option<String> {
+    let overlaps = own.iter().chain([&held_out]).any(|part| share_ground(place, *part));
+    overlaps.then(|| {
         let name = &place.city.metadata.name;
-        format!("{name} is part of the floor and overlaps the held-out part: it is no other city")
+        format!("{name} is part of the floor and overlaps the example: it is no other city")
     })
 }
 
+/// Do two windows overlap? Where a city without a place lies, only its own windows can tell.
 fn share_ground(a: Place, b: Place) -> bool {
+    let is_placeless = |p: Place| p.city.frame == Frame::null_island();
+    if (is_placeless(a) || is_placeless(b)) && !std::ptr::eq(a.city, b.city) {
+        return false;
+    }
     let extent = |p: Place| {
         let (sw, ne) = (p.city.frame.unproject(p.window.min), p.city.frame.unproject(p.window.max));
         [sw.lon, sw.lat, ne.lon, ne.lat]

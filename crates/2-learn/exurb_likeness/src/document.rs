@@ -149,8 +149,8 @@ impl Document {
         let families: Vec<String> =
             known.map(|(name, score)| format!("{name} {}", cell(*score))).collect();
         let mut out = format!(
-            "* core measure, no score: not informative here; {} of {} of streets and blocks count\n\
-             example: {}; figures of both are medians\n\n\
+            "* core measure; without a score: tells nothing here; {} of {} of streets and blocks count\n\
+             example: {}; typical figures are medians, of node_degree the mean\n\n\
              TOTAL {}   CORE {}   BUILT {}   {}\n\
              copied          {} of junctions with what lies within 150 m, {} within 300 m; \
              {} of the street length was laid from this example\n\
@@ -198,12 +198,6 @@ impl MeasureDocument {
             score: score.score.map(round),
             informative: score.informative,
         }
-    }
-
-    /// What the measure of this name measures, without the explanation; empty for a name that is none.
-    pub fn title(name: &str) -> &'static str {
-        let title = crate::measures::find(name).map_or("", |m| words(m).title);
-        title.split_once(':').map_or(title, |(title, _)| title)
     }
 
     /// A value of this measure with its unit.

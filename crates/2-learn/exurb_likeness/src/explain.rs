@@ -23,7 +23,7 @@ fn quantile(measured: &Measured, measure: &Measure, share: f64) -> Option<f64> {
     Some(if words(measure).is_log { exurb_geom::trig::pow(10.0, value) } else { value })
 }
 
-/// A figure with its unit: three digits, two of what is less than 1.
+/// A figure with its unit: three digits, two of what is less than 1, but no more than four decimals.
 pub fn figure(value: f64, unit: &str) -> String {
     let digits = match value.abs() {
         v if v >= 99.5 => 0,
@@ -34,7 +34,10 @@ pub fn figure(value: f64, unit: &str) -> String {
         _ => 0,
     };
     let space = if unit.is_empty() || unit.starts_with('°') { "" } else { " " };
-    format!("{value:.digits$}{space}{unit}")
+    let rounded = format!("{value:.digits$}");
+    // A tiny negative value is a plain 0.
+    let plain = if rounded.trim_start_matches(['-', '0', '.']).is_empty() { "0" } else { &rounded };
+    format!("{plain}{space}{unit}")
 }
 
 /// How the candidate differs from the held-out part in one measure.
@@ -53,6 +56,12 @@ pub fn sentence(score: &Score, candidate: &Measured, held_out: &Measured) -> Str
         }
         Some(_) if matches!(measure.distance, Distance::Wasserstein(_)) => {
             spread_sentence(measure, candidate, held_out)
+        }
+        _ if measure.distance == Distance::Variation => {
+            format!(
+                "{}: dead ends, junctions of three and of four are mixed differently.",
+                words.title
+            )
         }
         _ if measure.distance == Distance::Classifier => format!(
             "{subject} are told from the example's: of a pair a classifier names the new one in \
@@ -76,7 +85,7 @@ fn spread_sentence(measure: &Measure, candidate: &Measured, held_out: &Measured)
         format!("{} to {}", figure(low, ""), figure(high, unit))
     };
     if range(candidate, "") == range(held_out, "") {
-        return format!("{}: alike in general, but the rare values differ.", words.title);
+        return format!("{}: typical and outer values are alike, others are not.", words.title);
     }
     format!(
         "{} vary differently: four in five lie within {} instead of {}.",
@@ -86,15 +95,13 @@ fn spread_sentence(measure: &Measure, candidate: &Measured, held_out: &Measured)
     )
 }
 
-/// A measure that scores as much is not named as one of the worst.
-const LIKE: f64 = 0.9;
+/// From this score on a measure counts as alike and is not named among the worst.
+const ALIKE_SCORE: f64 = 0.9;
 
 /// The informative measures with the lowest scores, worst first; none that is like the example.
 pub fn worst(card: &Scorecard, count: usize) -> Vec<&Score> {
-    let score = |s: &Score| s.score.unwrap_or_default();
-    let scored = card.measures.iter().filter(|s| s.informative && s.score.is_some());
-    let mut scored: Vec<&Score> = scored.filter(|s| score(s) < LIKE).collect();
-    scored.sort_by(|a, b| score(a).total_cmp(&score(b)));
-    scored.truncate(count);
-    scored
+    let scored = card.measures.iter().filter_map(|s| Some((s.score?, s)));
+    let mut scored: Vec<(f64, &Score)> = scored.filter(|(score, _)| *score < ALIKE_SCORE).collect();
+    scored.sort_by(|a, b| a.0.total_cmp(&b.0));
+    scored.into_iter().take(count).map(|(_, measure)| measure).collect()
 }

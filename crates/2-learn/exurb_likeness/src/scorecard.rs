@@ -203,7 +203,7 @@ impl Scorecard {
 
 fn families_where(measures: &[Score], keep: impl Fn(&Score) -> bool) -> BTreeMap<Family, f64> {
     let of = |family: Family| {
-        let own = measures.iter().filter(|s| s.informative && keep(s));
+        let own = measures.iter().filter(|s| keep(s));
         let own = own.filter(|s| s.measure.family == family);
         Some((family, mean(own.filter_map(|s| s.score).map(|s| s.clamp(-1.0, 1.0)))?))
     };

@@ -45,10 +45,10 @@ impl Table {
                 format!("{score:>width$}", width = f.name().len())
             };
             let families: Vec<String> = Family::STREETS.iter().map(family).collect();
-            let total = format!("{:.2} ({:.2})", row.total[0], row.total[1]);
+            let total = row.total.map_or("-".to_owned(), |[t, sd]| format!("{t:.2} ({sd:.2})"));
             let lower =
                 row.lower.map_or(String::new(), |l| format!("{:.2} ({:.2})", l.by, l.error));
-            let core = figure(Some(row.core));
+            let core = figure(row.core);
             out += &format!(
                 "{:<32} {total:>13} {lower:>15} {core:>6}  {}\n",
                 row.candidate,
@@ -58,7 +58,7 @@ impl Table {
         let higher = |pair: &&[Row]| pair[1].lower.is_some_and(|l| l.by < 0.0);
         for pair in self.rows.windows(2).filter(higher) {
             let (row, before) = (pair[1].candidate, pair[0].candidate);
-            let apart = pair[1].lower.is_some_and(|l| l.by < -SURE * l.error);
+            let apart = pair[1].lower.is_some_and(|l| l.by < -CHANCE_ERRORS * l.error);
             let surely = if apart { "" } else { ", within chance" };
             out += &format!("out of order: {row} above {before}{surely}\n");
         }
@@ -75,12 +75,13 @@ impl Table {
 pub struct Row {
     /// What the candidates are.
     pub candidate: &'static str,
-    /// Mean and standard deviation of TOTAL.
-    pub total: [f64; 2],
-    /// How far the row lies below the one before it; `None` for the first, and of one city.
+    /// Mean and standard deviation of TOTAL; `None` where no city has one.
+    pub total: Option<[f64; 2]>,
+    /// How far the row lies below the one before it; `None` for the first, and where fewer than two
+    /// cities have both.
     pub lower: Option<Lower>,
     /// Mean of CORE.
-    pub core: f64,
+    pub core: Option<f64>,
     /// Mean by family.
     pub families: BTreeMap<&'static str, f64>,
 }
@@ -106,8 +107,8 @@ impl Lower {
     }
 }
 
-/// Rows are out of order for sure when they are so by this many standard errors.
-const SURE: f64 = 2.0;
+/// Within so many standard errors chance can account for an order.
+const CHANCE_ERRORS: f64 = 2.0;
 
 /// Mean distances of one measure over all cities.
 #[derive(Clone, Debug, Serialize)]
@@ -294,16 +295,18 @@ fn totals(cards: &ByCity) -> Vec<Option<f64>> {
 fn row(candidate: &'static str, cards: &ByCity) -> Row {
     let cards: Vec<&Scorecard> = cards.iter().copied().flatten().collect();
     let totals: Vec<f64> = cards.iter().filter_map(|c| c.total).collect();
-    let total = mean(totals.iter().copied()).unwrap_or_default();
-    let variance = mean(totals.iter().map(|t| (t - total) * (t - total))).unwrap_or_default();
+    let total = mean(totals.iter().copied()).and_then(|total| {
+        let variance = mean(totals.iter().map(|t| (t - total) * (t - total)))?;
+        Some([total, variance.sqrt()])
+    });
     let family = |f: Family| {
         Some((f.name(), mean(cards.iter().filter_map(|c| c.families.get(&f).copied()))?))
     };
     Row {
         candidate,
-        total: [total, variance.sqrt()],
+        total,
         lower: None,
-        core: mean(cards.iter().filter_map(|c| c.core)).unwrap_or_default(),
+        core: mean(cards.iter().filter_map(|c| c.core)),
         families: Family::STREETS.into_iter().filter_map(family).collect(),
     }
 }
@@ -319,9 +322,9 @@ mod tests {
             |i: usize| Lower::of(&of_city(totals[i.checked_sub(1)?].1), &of_city(totals[i].1));
         let row = |(i, (candidate, own)): (usize, &(&'static str, [f64; 3]))| Row {
             candidate,
-            total: [own.iter().sum::<f64>() / 3.0, 0.0],
+            total: mean(own.iter().copied()).map(|total| [total, 0.0]),
             lower: lower(i),
-            core: 0.0,
+            core: None,
             families: BTreeMap::new(),
         };
         let rows = totals.iter().enumerate().map(row).collect();

@@ -19,6 +19,8 @@ const HEIGHT: f64 = 110.0;
 const BINS: usize = 40;
 /// Radius of a rose; three stand beside each other.
 const ROSE: f64 = 49.0;
+/// A unit that stands at the figures themselves.
+const DEGREES: &str = "°";
 /// Blocks drawn of a fingerprint.
 const DOTS: usize = 300;
 
@@ -61,12 +63,13 @@ pub fn chart(column: &Column, score: &Score) -> Option<String> {
     ))
 }
 
-/// What is measured, with its unit; degrees stand at the axis.
+/// What is measured, its scale and its unit; degrees stand at the axis.
 fn title(words: Words) -> String {
-    let scale = if words.is_log { ", logarithmic" } else { "" };
+    let scale = if words.scale.is_empty() { String::new() } else { format!(": {}", words.scale) };
+    let logarithmic = if words.is_log { ", logarithmic" } else { "" };
     match words.unit {
-        "" | "°" => words.title.to_owned() + scale,
-        unit => format!("{} ({unit}{scale})", words.title),
+        "" | DEGREES => format!("{}{scale}", words.title),
+        unit => format!("{}{scale} ({unit}{logarithmic})", words.title),
     }
 }
 
@@ -101,7 +104,8 @@ fn histograms(measure: &Measure, sets: &Sets) -> Option<String> {
             let _ = write!(out, "<polyline class=\"{class}\" points=\"{points}\"/>");
         }
     }
-    Some(out + &axis(low, high, words(measure)))
+    let words = words(measure);
+    Some(out + &axis(low, high, words.is_log, words.unit == DEGREES))
 }
 
 /// Weighted shares of bins, smoothed; what lies beyond the ends counts in the last bin.
@@ -119,13 +123,13 @@ fn bins(sample: &Sample, low: f64, high: f64) -> Vec<f64> {
 }
 
 /// Ground line, and the values at both ends and in the middle.
-fn axis(low: f64, high: f64, words: Words) -> String {
+fn axis(low: f64, high: f64, is_log: bool, is_degrees: bool) -> String {
     let mut out = format!("<path class=\"axis\" d=\"M0 {HEIGHT}H{WIDTH}\"/>");
     let places = [(0.0, "start"), (0.5, "middle"), (1.0, "end")];
     for (share, anchor) in places {
         let value = low + (high - low) * share;
-        let value = if words.is_log { trig::pow(10.0, value) } else { value };
-        let label = figure(value, if words.unit == "°" { words.unit } else { "" });
+        let value = if is_log { trig::pow(10.0, value) } else { value };
+        let label = figure(value, if is_degrees { DEGREES } else { "" });
         let _ = write!(
             out,
             "<text x=\"{:.0}\" y=\"{:.0}\" text-anchor=\"{anchor}\">{label}</text>",
@@ -197,6 +201,5 @@ fn dots(sets: &Sets) -> Option<String> {
                 write!(out, "<circle class=\"{class}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"1.6\"/>");
         }
     }
-    let words = Words { title: "", subject: "", more: "", less: "", unit: "m²", is_log: true };
-    (!out.is_empty()).then(|| out + &axis(low, high, words))
+    (!out.is_empty()).then(|| out + &axis(low, high, true, false))
 }

@@ -42,7 +42,7 @@ fn verdict(column: &Column) -> String {
     };
     let mut out = format!("<p class=\"lead\">{}</p>\n<div class=\"cards\">", reading(column));
     out += &card("TOTAL", document.total, "streets and blocks, all measures");
-    out += &card("CORE", document.core, "those measures of them that tell cities apart best");
+    out += &card("CORE", document.core, "the core measures: those that tell cities apart best");
     if document.built.is_some() {
         out += &card("BUILT", document.built, "buildings and parcels");
     }
@@ -97,7 +97,10 @@ fn section(column: &Column, named: bool) -> String {
     let mut out = format!("<h2>What differs most{of}</h2>\n");
     let worst = explain::worst(&column.likeness.scorecard, WORST);
     if worst.is_empty() {
-        out += "<p>No measure that tells something here differs notably.</p>\n";
+        out += match column.document.informative {
+            0 => "<p>No measure tells anything here.</p>\n",
+            _ => "<p>No measure that tells something here differs notably.</p>\n",
+        };
     }
     out += "<ol class=\"worst\">\n";
     for (score, sentence) in worst.iter().zip(&column.document.worst) {
@@ -113,8 +116,8 @@ fn section(column: &Column, named: bool) -> String {
     }
     out += &format!(
         "<h2>Distributions{of}</h2>\n<p class=\"legend\"><i class=\"new\"></i> the new city \
-         <i class=\"held-out\"></i> the example: {} <i class=\"part\"></i> the example: the part shown \
-         beside it</p>\n<p>Upwards: how frequent. Pale charts have no score: they do not count here.</p>\n\
+         <i class=\"held-out\"></i> the example: {} <i class=\"part\"></i> the example: its other part, \
+         as on its map</p>\n<p>Of curves and bars, upwards: how frequent. Pale charts have no score: they do not count here.</p>\n\
          <div class=\"charts\">\n{}</div>\n",
         text(&column.document.held_out_words()),
         charts::charts(column)

@@ -3,6 +3,8 @@
 use std::fmt::Write;
 
 use exurb_likeness::document::MeasureDocument;
+use exurb_likeness::measures::find;
+use exurb_likeness::words::words;
 
 use crate::Column;
 use crate::html::{figure, text};
@@ -42,7 +44,7 @@ pub fn table(column: &Column) -> String {
              <td>{}</td><td>{}</td><td>{}</td></tr>",
             if m.informative { "" } else { " class=\"faded\"" },
             if m.core { "<b title=\"core measure\">•</b> " } else { "" },
-            text(MeasureDocument::title(name)),
+            text(find(name).map_or("", |measure| words(measure).title)),
             text(&MeasureDocument::with_unit(name, m.example)),
             text(&MeasureDocument::with_unit(name, m.candidate)),
             figure(m.distance),

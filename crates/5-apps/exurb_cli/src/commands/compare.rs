@@ -208,7 +208,7 @@ fn reference(
     floor: &[City],
     panel: &Panel,
 ) -> Reference {
-    let (parts, unseen) = match held_out {
+    let (part, other) = match held_out {
         None => {
             let [a, b] = split(example);
             (a, b)
@@ -216,13 +216,13 @@ fn reference(
         Some(city) => {
             let size = city.target.bounds().size();
             let window = windows::of_size(example, size);
-            let unseen = Place { city, window: city.target.bounds() };
-            (Place { city: example, window }, unseen)
+            let held_out = Place { city, window: city.target.bounds() };
+            (Place { city: example, window }, held_out)
         }
     };
-    let (size, note) = common_size(&parts, &unseen, floor.iter().chain([candidate]));
+    let (size, note) = common_size(part, other, floor.iter().chain([candidate]));
     let floor = if floor.is_empty() { Floor::Panel } else { Floor::Cities(floor) };
-    let mut reference = Reference::new(example, &[parts], unseen, floor, panel, size, SEED);
+    let mut reference = Reference::new(example, &[part], other, floor, panel, size, SEED);
     reference.notes.extend(note);
     reference
 }
