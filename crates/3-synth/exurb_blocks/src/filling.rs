@@ -121,13 +121,19 @@ impl Filling {
 
 /// Numbers parcels and buildings block by block; buildings follow their parcels.
 fn number(parcels: &mut [Parcel], buildings: &mut [Building]) {
-    parcels.sort_by_key(|p| p.block);
-    let renumbered: BTreeMap<u32, u32> =
-        parcels.iter().zip(1..).map(|(p, id)| (p.id, id)).collect();
-    parcels.iter_mut().zip(1..).for_each(|(parcel, id)| parcel.id = id);
+    number_parcels(parcels, buildings);
     buildings.sort_by_key(|b| b.block);
-    for (building, id) in buildings.iter_mut().zip(1..) {
-        building.id = id;
+    buildings.iter_mut().zip(1..).for_each(|(building, id)| building.id = id);
+}
+
+/// Numbers parcels block by block; buildings follow theirs. New parcels that no building names yet have
+/// the number 0.
+pub fn number_parcels(parcels: &mut [Parcel], buildings: &mut [Building]) {
+    parcels.sort_by_key(|p| p.block);
+    let known = parcels.iter().zip(1..).filter(|(p, _)| p.id != 0);
+    let renumbered: BTreeMap<u32, u32> = known.map(|(p, id)| (p.id, id)).collect();
+    parcels.iter_mut().zip(1..).for_each(|(parcel, id)| parcel.id = id);
+    for building in buildings {
         building.parcel = renumbered.get(&building.parcel).copied().unwrap_or(0);
     }
 }

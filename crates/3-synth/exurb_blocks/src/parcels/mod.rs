@@ -207,7 +207,8 @@ fn written(
 ) -> Edit {
     let mut parcels: Vec<Parcel> =
         city.parcels.iter().filter(|p| !scoped.holds(p.block)).cloned().collect();
-    let buildings = city.buildings.iter().filter(|b| !scoped.holds(b.block)).cloned().collect();
+    let mut buildings: Vec<_> =
+        city.buildings.iter().filter(|b| !scoped.holds(b.block)).cloned().collect();
     let mut land_use: Vec<Area> = city.land_use.to_vec();
     let mut next_area = land_use.iter().map(|a| a.id).max().unwrap_or(0) + 1;
     for (block, cut) in blocks.iter_mut().zip(cut) {
@@ -232,10 +233,7 @@ fn written(
             });
         }
     }
-    parcels.sort_by_key(|p| p.block);
-    for (parcel, id) in parcels.iter_mut().zip(1..) {
-        parcel.id = id;
-    }
+    filling::number_parcels(&mut parcels, &mut buildings);
     Edit {
         blocks: Some(blocks),
         parcels: Some(parcels),

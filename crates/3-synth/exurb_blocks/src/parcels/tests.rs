@@ -5,6 +5,7 @@ use rand::SeedableRng;
 use serde_json::{Value, json};
 
 use super::{Input, Params, Parcels, synthesize};
+use crate::footprints::Footprints;
 use crate::test_city::{Style, grid, odd_block, with_parks};
 
 fn input(frontage_m: f64, depth_m: f64) -> Input {
@@ -183,6 +184,31 @@ fn a_scope_leaves_the_rest_as_it_is() {
     };
     assert_eq!(of(&before, |b| b != 2), of(&after, |b| b != 2));
     assert_ne!(of(&before, |b| b == 2), of(&after, |b| b == 2));
+}
+
+/// A block cut into another number of parcels moves the numbers of all after it.
+#[test]
+fn buildings_follow_their_parcels_when_others_are_cut_anew() {
+    let example = [Example::new(grid(3, 3, Vec2::new(130.0, 95.0), Style::Rows))];
+    let on = |city: &City, params: Value, scope: Scope| {
+        let run = Run::new(1);
+        erase::<Parcels>().run(city, &scope, &example, params, &run).unwrap().city
+    };
+    let city = on(&grid(3, 3, Vec2::new(130.0, 95.0), Style::Empty), Value::Null, Scope::All);
+    let stand = erase::<Footprints>();
+    let built = stand.run(&city, &Scope::All, &example, Value::Null, &Run::new(1)).unwrap().city;
+    let cut = on(&built, json!({ "method": "box" }), Scope::Blocks(vec![2, 3]));
+    assert_ne!(cut.parcels.len(), built.parcels.len());
+    let home = |city: &City, number: u32| {
+        city.parcels.iter().find(|p| p.id == number).map(|p| p.polygon.clone())
+    };
+    let kept: Vec<_> = built.buildings.iter().filter(|b| ![2, 3].contains(&b.block)).collect();
+    assert_eq!(kept.len(), cut.buildings.len());
+    for (before, after) in kept.into_iter().zip(cut.buildings.iter()) {
+        assert_eq!(home(&built, before.parcel), home(&cut, after.parcel));
+        let polygon = home(&cut, after.parcel).expect("a parcel");
+        assert!(polygon.contains(GridPoint::round(after.polygon.interior_point())));
+    }
 }
 
 #[test]
