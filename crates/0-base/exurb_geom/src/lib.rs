@@ -25,6 +25,7 @@
 //! | [`mean_value`] | a map of a polygon's inside that follows its outline |
 //! | [`roadside`] | what streets take of the ground beside them |
 //! | [`segment_index`] | segments near a box, while they come and go |
+//! | [`spikes`] | polygons without spikes and cracks of no width |
 //! | [`point_index`] | points near a point, while they come and go |
 //! | [`crs`] | coordinate systems of other files to longitude and latitude |
 //! | [`projection`] | longitude and latitude to local metres and back |
@@ -62,6 +63,7 @@ pub mod roadside;
 pub mod row_polygon;
 pub mod segment_grid;
 pub mod segment_index;
+pub mod spikes;
 pub mod split;
 pub mod straight_skeleton;
 pub mod trig;

@@ -2,7 +2,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use exurb_city::{City, Edit};
-use exurb_geom::Polygon;
+use exurb_geom::{Polygon, overlay};
 use serde_json::Value;
 
 use crate::{Card, Failure, Params, Run, params};
@@ -76,6 +76,26 @@ pub enum Scope {
     Inside(Polygon),
     /// In the blocks of these numbers.
     Blocks(Vec<u32>),
+}
+
+impl Scope {
+    /// Why nothing of `city` lies in this scope, or a part that is named does not; `None` where all does.
+    fn misses(&self, city: &City) -> Option<String> {
+        match self {
+            Scope::All => None,
+            Scope::Inside(area) => {
+                overlay::intersection(area, &city.target).is_empty().then(|| {
+                    "the scope lies outside the city; give a polygon that overlaps its target"
+                        .to_owned()
+                })
+            }
+            // A city without blocks gets them from its streets later.
+            Scope::Blocks(ids) => ids
+                .iter()
+                .find(|id| !city.blocks.is_empty() && city.blocks.iter().all(|b| b.id != **id))
+                .map(|id| format!("there is no block {id}; the layer `blocks` has the numbers")),
+        }
+    }
 }
 
 /// How long learning and editing took, in seconds.
@@ -183,6 +203,9 @@ impl<O: Operation> AnyOperation for Erased<O> {
         if O::CARD.needs_example && examples.is_empty() {
             let message = "there is no example; name one with --example FILE".to_owned();
             return Err(Failure::Example { operation, message });
+        }
+        if let Some(message) = scope.misses(city) {
+            return Err(Failure::City { operation, message });
         }
         let run = run.named(&operation);
         run.check()?;

@@ -6,12 +6,13 @@
 //! that run on outside the city say so as mappers do (`fixme=continue`); the target is an outline of
 //! its own, last, because streets run past it and bounds are but a box inside.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use exurb_city::{City, FeatureShape, Street, StreetGraph, Way};
 use exurb_geom::{GridPoint, Polygon};
 
-use crate::{areas, features, shared_walls, surfaces};
+use crate::{areas, features, narrow, shared_walls, surfaces};
 
 /// Key and value.
 pub type Tag = (&'static str, String);
@@ -62,7 +63,11 @@ impl<'a> Document<'a> {
             out.other_way(way, &mut at);
         }
         let mut corners = BTreeMap::new();
-        let outlines: Vec<&Polygon> = city.buildings.iter().map(|b| &b.polygon).collect();
+        let outlines = city.buildings.iter().map(|b| {
+            narrow::mended(&b.polygon, &city.frame).map_or(Cow::Borrowed(&b.polygon), Cow::Owned)
+        });
+        let outlines: Vec<Cow<Polygon>> = outlines.collect();
+        let outlines: Vec<&Polygon> = outlines.iter().map(|polygon| &**polygon).collect();
         for (building, rings) in city.buildings.iter().zip(shared_walls::rings(&outlines)) {
             out.rings(&rings, building_tags(building), &mut corners);
         }
@@ -193,7 +198,7 @@ impl<'a> Document<'a> {
 }
 
 /// A ring without corners that lie so near to the one before that OSM's centimetre could swap them.
-fn spaced(ring: &[GridPoint]) -> Vec<GridPoint> {
+pub fn spaced(ring: &[GridPoint]) -> Vec<GridPoint> {
     const APART_M: f64 = 0.03;
     let mut out: Vec<GridPoint> = Vec::with_capacity(ring.len());
     for p in ring {
@@ -208,7 +213,7 @@ fn spaced(ring: &[GridPoint]) -> Vec<GridPoint> {
 }
 
 /// In 1e-7 degrees.
-fn fixed(degrees: f64) -> i32 {
+pub fn fixed(degrees: f64) -> i32 {
     (degrees * 1e7).round() as i32
 }
 

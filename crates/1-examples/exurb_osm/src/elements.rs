@@ -149,3 +149,10 @@ impl Elements {
         self.ways.binary_search_by_key(&id, |w| w.id).ok()
     }
 }
+
+/// Did this program write a file whose head names that generator? Its scripts, such as the one that cuts
+/// extracts, name themselves behind its name and no version.
+pub fn is_ours(generator: &str) -> bool {
+    let version = generator.strip_prefix(crate::GENERATOR).and_then(|v| v.strip_prefix(' '));
+    version.is_some_and(|v| v.starts_with(|c: char| c.is_ascii_digit()))
+}

@@ -23,6 +23,7 @@ mod error;
 mod features;
 pub mod fuzz;
 mod import;
+mod narrow;
 mod outline;
 mod pbf_format;
 mod places;

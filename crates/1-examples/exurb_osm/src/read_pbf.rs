@@ -13,7 +13,7 @@ use prost::bytes::Bytes;
 use rayon::prelude::*;
 
 use crate::Error;
-use crate::elements::{Elements, Member};
+use crate::elements::{Elements, Member, is_ours};
 use crate::pbf_format as pbf;
 use crate::pbf_format::{GRANULARITY, MAX_BLOB_BYTES, MAX_HEADER_BYTES};
 use crate::read::Ratio;
@@ -144,7 +144,7 @@ fn decode_header(data: Bytes) -> Result<Decoded, String> {
     let degrees = |nano: i64| nano as f64 * 1e-9;
     let bounds = header.bbox.map(|b| [b.left, b.bottom, b.right, b.top].map(degrees));
     let mut elements = Elements { bounds, ..Elements::default() };
-    elements.is_ours = header.writingprogram.is_some_and(|p| p.starts_with(crate::GENERATOR));
+    elements.is_ours = header.writingprogram.is_some_and(|p| is_ours(&p));
     if let Some(source) = header.source.filter(|_| elements.is_ours) {
         elements.attribution.extend(source.split("; ").map(str::to_owned));
     }

@@ -7,7 +7,7 @@ use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
 use crate::Error;
-use crate::elements::{Elements, Member};
+use crate::elements::{Elements, Member, is_ours};
 use crate::tags::{self, Tags};
 
 /// The element being read.
@@ -96,7 +96,7 @@ fn root(tag: &BytesStart, file: &str, out: &mut Elements) -> Result<(), Error> {
     let mut given = Vec::new();
     for (key, value) in attributes(tag) {
         match key {
-            "generator" => out.is_ours = value.starts_with(crate::GENERATOR),
+            "generator" => out.is_ours = is_ours(&value),
             "attribution" | "copyright" => {
                 given.extend(value.split("; ").map(str::to_owned));
             }

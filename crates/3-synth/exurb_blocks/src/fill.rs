@@ -9,7 +9,7 @@ use exurb_operation::{Failure, Run, Scope};
 use rayon::prelude::*;
 
 use crate::choice::{Candidate, Choice, Choosing, Learned, Way, Ways, choose};
-use crate::filling::{Filling, written};
+use crate::filling::{self, Filling, written};
 use crate::kerb::Kerb;
 use crate::lawful::lawful;
 use crate::refine::Why;
@@ -179,8 +179,12 @@ fn of_candidates(
         let ground = offset::inset(&block.polygon, choosing.pavement);
         ground.into_iter().map(|p| (p, class.clone())).collect::<Vec<_>>()
     });
+    let mut buildings = chosen.laid.buildings.clone();
+    if !chosen.is_same {
+        filling::trim(&mut buildings);
+    }
     Filling {
-        buildings: chosen.laid.buildings.clone(),
+        buildings,
         parcels: Vec::new(),
         things,
         open: open.filter(|_| !chosen.is_same).unwrap_or_default(),

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use exurb_city::{Area, Block, Building, City, Edit, Feature, Parcel, Provenance, area};
-use exurb_geom::{GridPoint, Polygon, RowSides, offset};
+use exurb_geom::{GridPoint, Polygon, RowSides, offset, spikes};
 
 use crate::kerb::Kerb;
 use crate::parcels::{ACCESS_M, Holding, cadastre};
@@ -72,6 +72,21 @@ pub fn written(city: &City, mut blocks: Vec<Block>, fillings: Vec<Option<Filling
         features: Some(things),
         land_use: Some(land_use),
         ..Edit::default()
+    }
+}
+
+/// Corners of footprints sharper than this are what cutting and moving walls left over, 6°.
+const SHARP_RAD: f64 = 0.1;
+/// Cracks in them are filled where that adds no more, in m².
+const CRACK_M2: f64 = 0.05;
+
+/// Takes spikes and cracks without width off footprints.
+pub fn trim(buildings: &mut [Building]) {
+    for building in buildings {
+        let trimmed = spikes::without_spikes(&building.polygon, SHARP_RAD, CRACK_M2);
+        if let Some(trimmed) = trimmed.filter(Polygon::is_valid) {
+            building.polygon = trimmed;
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! A sample's building put on a lot.
 
+use exurb_geom::spikes::without_spikes;
 use exurb_geom::{GridPoint, OrientedBox, Polygon, Vec2, grid, polyline, trig};
 
 use super::lot::Lot;
@@ -38,30 +39,14 @@ const MOST_GROWTH: f64 = 2.0;
 pub fn place(lot: &Lot, wish: &Wish<'_>) -> Option<Polygon> {
     let in_row = wish.wall_before || wish.wall_after;
     let found = if in_row { row::place(lot, wish) } else { None };
-    found.or_else(|| detached(lot, wish)).and_then(without_spikes).filter(|p| is_sound(p, wish))
+    found.or_else(|| detached(lot, wish)).and_then(without_hairs).filter(|p| is_sound(p, wish))
 }
 
-/// The outline without corners sharper than 6°, where a wall turns back on itself: fitted walls can
-/// overshoot by a hand's breadth, and such a hair closes up when a file rounds its places.
-fn without_spikes(polygon: Polygon) -> Option<Polygon> {
-    const SHARP_RAD: f64 = 0.1;
-    let trim = |ring: &[GridPoint]| {
-        let mut ring = ring.to_vec();
-        let sharp = |ring: &[GridPoint], i: usize| {
-            let n = ring.len();
-            let [a, b, c] =
-                [ring[(i + n - 1) % n], ring[i], ring[(i + 1) % n]].map(GridPoint::to_m);
-            trig::angle_between(a - b, c - b) < SHARP_RAD
-        };
-        while ring.len() > 3
-            && let Some(i) = (0..ring.len()).find(|i| sharp(&ring, *i))
-        {
-            ring.remove(i);
-        }
-        ring
-    };
-    let interiors = polygon.interiors().iter().map(|ring| trim(ring)).collect();
-    Polygon::new(trim(polygon.exterior()), interiors)
+/// Corners sharper than this go, 6°: fitted walls can overshoot by a hand's breadth.
+const SHARP_RAD: f64 = 0.1;
+
+fn without_hairs(polygon: Polygon) -> Option<Polygon> {
+    without_spikes(&polygon, SHARP_RAD, f64::INFINITY)
 }
 
 /// Large enough, no sliver, not blown up by a lot that is nothing like the sample's.

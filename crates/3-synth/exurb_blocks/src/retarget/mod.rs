@@ -54,7 +54,7 @@ pub(crate) use whole::is_whole;
 use crate::choice::{Learned, Ways};
 use crate::database::BlockDatabase;
 use crate::fill::{Limits, blocks_of, fill};
-use crate::filling::{Filling, written};
+use crate::filling::{self, Filling, written};
 use crate::lay::Spacing;
 use crate::library::OpenLand;
 use crate::transfer::{check, learn};
@@ -137,14 +137,15 @@ fn edited(city: &City, params: &Params, run: &Run) -> Result<Edit, Error> {
     let laid = editor.laid(&outline, &OpenLand::of(city));
     run.tally("footprints placed", laid.buildings.iter().filter(|b| !b.is_part).count() as u64);
     run.tally("footprints of the layout", layout.footprints.len() as u64);
-    let mut things = laid.things;
+    let (mut buildings, mut things) = (laid.buildings, laid.things);
+    filling::trim(&mut buildings);
     if params.guidance {
         let guiding = editor.guidance_map(&outline);
         things.extend(guiding.into_iter().map(|polygon| guidance_feature(polygon, &blocks[at])));
     }
     let provenance = Provenance { origin: Origin::Edited, ..Provenance::default() };
     let filling = Filling {
-        buildings: laid.buildings,
+        buildings,
         things,
         land_use: blocks[at].land_use.clone(),
         pavement_m: blocks[at].pavement_m,
