@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use exurb_geom::{GridPoint, Polygon, SegmentGrid, polyline};
 
 /// A corner no farther from a wall stands in it, in millimetres.
-const TOLERANCE_MM: i32 = 3;
+const TOLERANCE_MM: i32 = 10;
 
 /// The rings of all polygons, outer ones first, each with the corners of the others that stand in
 /// its walls. O(n log n).

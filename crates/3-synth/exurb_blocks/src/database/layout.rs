@@ -66,8 +66,9 @@ const LEAST_BLOCK_M2: f64 = 100.0;
 /// A footprint that flaws of the map take more of than this share is left out.
 const FLAW_TOLERANCE: f64 = 0.3;
 
-/// The layouts of a city's blocks; islands and slivers are left out, and so are empty blocks where the
-/// map's buildings are not complete and nothing says that the land is open. Linear in elements.
+/// The layouts of a city's blocks; islands and slivers are left out, and so are empty blocks, parks too,
+/// where the map's buildings are not complete: how many blocks are open it does not tell. Linear in
+/// elements.
 pub fn layouts_of(
     city: &City,
     blocks: &[Block],
@@ -79,8 +80,7 @@ pub fn layouts_of(
     let mut out = Vec::new();
     for ((block, home), features) in blocks.iter().zip(homes).zip(features) {
         let Some(layout) = layout(city, block, home, *features, weight, &open) else { continue };
-        let told = city.metadata.buildings_complete || layout.open.is_some();
-        if told || !layout.footprints.is_empty() {
+        if city.metadata.buildings_complete || !layout.footprints.is_empty() {
             out.push(layout);
         }
     }

@@ -6,8 +6,8 @@ pub enum Error {
     NoBlocks,
     /// There is nothing to take from.
     #[error(
-        "the examples have no block with buildings or open land; take an example whose streets \
-         enclose buildings, or use `blocks parcels` and `blocks footprints`"
+        "the examples have no block with buildings; take an example whose streets enclose buildings, or \
+         use `blocks parcels` and `blocks footprints`"
     )]
     EmptyDatabase,
 }

@@ -31,14 +31,20 @@ pub struct Learned {
     pub heights: Vec<Sample>,
     /// Those with a roof shape.
     pub roofs: Vec<Sample>,
-    /// Those with a use.
+    /// All, with and without a use, so that uses are as frequent as in the example; none where it tells
+    /// no uses.
     pub uses: Vec<Sample>,
     /// Correlation of ln height between neighbours in one block, in `0..=1`.
     pub block_share: f64,
 }
 
-/// Fewer known heights than this are exceptions that mappers noted, not a city's heights.
+/// Fewer known heights than this, or than this share of the buildings, are exceptions that mappers noted,
+/// not a city's heights.
 const ENOUGH: usize = 5;
+const ENOUGH_SHARE: f64 = 0.01;
+/// What OpenStreetMap's `building` says of a building's state, or nothing at all.
+const NO_USE: [&str; 7] =
+    ["yes", "collapsed", "construction", "damaged", "demolished", "destroyed", "ruins"];
 /// No more samples are kept of each kind.
 const MOST_SAMPLES: usize = 3000;
 /// Correlation within a block where the example cannot tell.
@@ -95,21 +101,29 @@ pub fn learn(examples: &[Example], params: &Params, run: &Run) -> Result<Learned
             }
             learned.heights.extend(sample.height_m.is_some().then(|| sample.clone()));
             learned.roofs.extend(sample.roof.is_some().then(|| sample.clone()));
-            learned.uses.extend(sample.usage.is_some().then_some(sample));
+            learned.uses.push(sample);
         }
         count += 1;
     }
+    learned.block_share = pairs.correlation().unwrap_or(BLOCK_SHARE);
+    let enough = ENOUGH.max((learned.uses.len() as f64 * ENOUGH_SHARE).ceil() as usize);
+    if learned.heights.len() < enough {
+        learned.heights.clear();
+        run.warn(
+            "the example tells hardly any heights; storeys follow from footprints and their density",
+        );
+    }
+    if learned.roofs.len() < enough {
+        learned.roofs.clear();
+        run.warn(
+            "the example tells hardly any roof shapes; small and narrow houses get pitched roofs",
+        );
+    }
+    if learned.uses.iter().all(|sample| sample.usage.is_none()) {
+        learned.uses.clear();
+    }
     for list in [&mut learned.heights, &mut learned.roofs, &mut learned.uses] {
         *list = thinned(std::mem::take(list));
-    }
-    learned.block_share = pairs.correlation().unwrap_or(BLOCK_SHARE);
-    if learned.heights.len() < ENOUGH {
-        learned.heights.clear();
-        run.warn("the example tells no heights; storeys follow from footprints and their density");
-    }
-    if learned.roofs.len() < ENOUGH {
-        learned.roofs.clear();
-        run.warn("the example tells no roof shapes; small and narrow houses get pitched roofs");
     }
     Ok(learned)
 }
@@ -139,8 +153,7 @@ fn sample(building: &Building, likeness: Likeness, params: &Params) -> Sample {
     let levels = building.levels.filter(sane);
     let height_m =
         building.height_m.filter(sane).or_else(|| levels.map(|l| l * params.storey_height));
-    // `building=yes` says nothing.
-    let usage = building.usage.clone().filter(|u| &**u != "yes");
+    let usage = building.usage.clone().filter(|u| !NO_USE.contains(&&**u));
     Sample { likeness, height_m, levels, roof: building.roof, usage }
 }
 

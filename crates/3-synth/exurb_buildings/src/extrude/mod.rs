@@ -4,8 +4,8 @@
 //! area, shorter side, coverage of its block, usual footprint nearby, shared walls ([`likeness`]);
 //! 2 its height is drawn among the example's buildings most like it, at a quantile that it shares with
 //! its block as much as the example's blocks do, so that the marginal distribution is the example's
-//! and neighbours are as alike as there; 3 roof and use are drawn in the same way; where the example
-//! tells none, documented defaults ([`defaults`]), said in a warning. Known values stay, unless
+//! and neighbours are as alike as there; 3 roof and use are drawn in the same way, garages and the like
+//! stay low; where the example tells none, documented defaults ([`defaults`]), said in a warning. Known values stay, unless
 //! asked. Units: metres. Complexity: O(buildings · samples). Each block has its own random stream by
 //! place.
 
@@ -111,7 +111,9 @@ fn complete(building: &mut Building, shape: Shape, params: &Params) {
     if replace || building.roof.is_none() {
         building.roof = Some(shape.roof);
     }
-    if (replace || building.usage.is_none()) && shape.usage.is_some() {
-        building.usage = shape.usage;
+    let is_high = building.height_m.is_some_and(|h| h > synthesize::LOW_M);
+    let usage = shape.usage.filter(|usage| !(is_high && synthesize::is_low(usage)));
+    if (replace || building.usage.is_none()) && usage.is_some() {
+        building.usage = usage;
     }
 }

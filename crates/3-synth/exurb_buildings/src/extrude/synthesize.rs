@@ -13,6 +13,28 @@ use super::defaults;
 use super::learn::{Learned, Sample};
 use super::likeness::{Likeness, square_distance};
 
+/// A building takes its use from one no more than so many times as large or small.
+const MOST_AREA_RATIO: f64 = 2.0;
+/// What has one storey by its use is no higher than this, in metres.
+pub const LOW_M: f64 = 4.0;
+
+/// Has a building of this use one storey?
+pub fn is_low(usage: &str) -> bool {
+    const LOW: [&str; 10] = [
+        "carport",
+        "garage",
+        "garages",
+        "greenhouse",
+        "hut",
+        "kiosk",
+        "roof",
+        "service",
+        "shed",
+        "toilets",
+    ];
+    LOW.contains(&usage)
+}
+
 /// What one building becomes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shape {
@@ -54,6 +76,11 @@ pub fn synthesize(
     let quantile = normal_cdf(shared.sqrt() * block.height + (1.0 - shared).sqrt() * own);
     let (roof_draw, use_draw): (f64, f64) = (rng.random(), rng.random());
 
+    let uses = nearest(&learned.uses, likeness, params.neighbours);
+    let usage = at_quantile(&uses, use_draw)
+        .filter(|s| (s.likeness[0] - likeness[0]).abs() < trig::ln(MOST_AREA_RATIO))
+        .and_then(|s| s.usage.clone());
+
     let mut like = nearest(&learned.heights, likeness, params.neighbours);
     like.sort_by(|a, b| a.height_m.unwrap_or(0.0).total_cmp(&b.height_m.unwrap_or(0.0)));
     let (height_m, levels) = match at_quantile(&like, quantile) {
@@ -69,14 +96,16 @@ pub fn synthesize(
             (levels * params.storey_height, levels)
         }
     };
+    let (height_m, levels) = match &usage {
+        Some(usage) if is_low(usage) => (height_m.min(LOW_M), 1.0),
+        _ => (height_m, levels),
+    };
     // Half of the blocks have one kind of roof, in the others each house has its own.
     let roof_draw = if block.roof < 0.5 { block.roof * 2.0 } else { roof_draw };
     let roofs = nearest(&learned.roofs, likeness, params.neighbours);
     let roof = at_quantile(&roofs, roof_draw)
         .and_then(|s| s.roof)
         .map_or_else(|| defaults::roof(likeness, levels), simplified);
-    let uses = nearest(&learned.uses, likeness, params.neighbours);
-    let usage = at_quantile(&uses, use_draw).and_then(|s| s.usage.clone());
     Shape { height_m, levels, roof, usage }
 }
 
