@@ -68,8 +68,14 @@ impl<'a> Document<'a> {
         });
         let outlines: Vec<Cow<Polygon>> = outlines.collect();
         let outlines: Vec<&Polygon> = outlines.iter().map(|polygon| &**polygon).collect();
-        for (building, rings) in city.buildings.iter().zip(shared_walls::rings(&outlines)) {
-            out.rings(&rings, building_tags(building), &mut corners);
+        let shared = shared_walls::rings(&outlines);
+        for ((building, outline), rings) in city.buildings.iter().zip(&outlines).zip(shared) {
+            let tags = building_tags(building);
+            if narrow::are_valid(&rings, &city.frame) {
+                out.rings(&rings, tags, &mut corners);
+            } else {
+                out.polygon(outline, tags, &mut corners);
+            }
         }
         for area in city.water.iter() {
             let mut tags = vec![("natural", "water".to_owned())];

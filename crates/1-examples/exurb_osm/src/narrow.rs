@@ -1,6 +1,6 @@
 //! Outlines so narrow somewhere that OSM's centimetre would make them cross themselves.
 
-use exurb_geom::{Frame, LonLat, Polygon, offset};
+use exurb_geom::{Frame, GridPoint, LonLat, Polygon, offset};
 
 use crate::document::{fixed, spaced};
 
@@ -27,26 +27,27 @@ fn moved_and_back(polygon: &Polygon, by_m: f64) -> Option<Polygon> {
     largest(offset::inset(&largest(offset::inset(polygon, by_m))?, -by_m))
 }
 
-/// Is it valid with its corners where OSM writes them?
 fn survives(polygon: &Polygon, frame: &Frame) -> bool {
+    let rings: Vec<&[GridPoint]> = polygon.rings().collect();
+    are_valid(&rings, frame)
+}
+
+/// Are rings, the outer one first, valid with their corners where OSM writes them?
+pub fn are_valid(rings: &[impl AsRef<[GridPoint]>], frame: &Frame) -> bool {
     let degrees = |v: f64| f64::from(fixed(v)) / 1e7;
-    let written = |ring: &[exurb_geom::GridPoint]| {
-        let place = |p: &exurb_geom::GridPoint| {
-            let LonLat { lon, lat } = frame.unproject(p.to_m());
-            frame.project_to_grid(LonLat { lon: degrees(lon), lat: degrees(lat) })
-        };
-        spaced(ring).iter().map(place).collect::<Option<Vec<_>>>()
+    let place = |p: &GridPoint| {
+        let LonLat { lon, lat } = frame.unproject(p.to_m());
+        frame.project_to_grid(LonLat { lon: degrees(lon), lat: degrees(lat) })
     };
-    let rings: Option<Vec<_>> = polygon.rings().map(written).collect();
-    let Some(mut rings) = rings.filter(|rings| !rings.is_empty()) else { return true };
-    let exterior = rings.remove(0);
-    Polygon::new(exterior, rings).is_some_and(|p| p.is_valid())
+    let written = |ring: &[GridPoint]| spaced(ring).iter().map(place).collect::<Option<Vec<_>>>();
+    let mut rings = rings.iter().map(|ring| written(ring.as_ref()));
+    let Some(Some(exterior)) = rings.next() else { return true };
+    let Some(interiors) = rings.collect::<Option<Vec<_>>>() else { return true };
+    Polygon::new(exterior, interiors).is_some_and(|p| p.is_valid())
 }
 
 #[cfg(test)]
 mod tests {
-    use exurb_geom::GridPoint;
-
     use super::*;
 
     #[test]
