@@ -31,7 +31,7 @@ pub use style::Styles;
 
 use crate::database::{Layout, relief_m};
 use crate::fill::Limits;
-use crate::library::{OPEN_SHARE, OpenLand, Surroundings};
+use crate::library::{OpenLand, Surroundings};
 use crate::neighbours::{MainStreets, neighbours};
 use crate::retarget::Settings;
 use field::Place;
@@ -97,8 +97,7 @@ pub fn choose(
         sites.par_iter().map(|site| same(site.as_ref()?, learned, serving)).collect();
     // A block that lies in an example as it is takes after it, park or not.
     let given = |(block, same): (&Block, &Option<Match>)| {
-        let share = if same.is_none() { open.share(&block.polygon) } else { None };
-        share.filter(|(_, s)| *s >= OPEN_SHARE).map(|(class, _)| class)
+        if same.is_none() { open.keeps_open(&block.polygon) } else { None }
     };
     let given: Vec<Option<std::sync::Arc<str>>> = blocks.par_iter().zip(&same).map(given).collect();
     for (site, given) in sites.iter_mut().zip(&given) {

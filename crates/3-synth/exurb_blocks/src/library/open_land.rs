@@ -3,6 +3,11 @@ use std::sync::Arc;
 use exurb_city::{City, area};
 use exurb_geom::{Bounds, BoxGrid, GridPoint, Polygon, grid};
 
+use super::OPEN_SHARE;
+
+/// From this share of water on, a block is water.
+const WATER_SHARE: f64 = 0.9;
+
 /// Land that is kept free of buildings, and water.
 #[derive(Clone, Debug)]
 pub struct OpenLand {
@@ -49,6 +54,13 @@ impl OpenLand {
             .map(|n| &self.areas[*n as usize].1)
             .max_by_key(|class| (class_hits(class), std::cmp::Reverse((*class).clone())))?;
         (open > 0).then(|| (most.clone(), open as f64 / points.len() as f64))
+    }
+
+    /// The class that keeps a block open: it is so by half, or lies in water but for a rim. A block with a
+    /// river in it has banks to build on.
+    pub fn keeps_open(&self, block: &Polygon) -> Option<Arc<str>> {
+        let least = |class: &str| if class == "water" { WATER_SHARE } else { OPEN_SHARE };
+        self.share(block).filter(|(class, share)| *share >= least(class)).map(|(class, _)| class)
     }
 
     /// What of it reaches the box around `ground`.
@@ -117,4 +129,33 @@ fn sample(ground: &Polygon) -> Vec<GridPoint> {
         out.push(GridPoint::round(ground.interior_point()));
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use exurb_city::Area;
+    use exurb_geom::Frame;
+
+    use super::*;
+
+    fn rectangle(x: f64, to_x: f64) -> Polygon {
+        Polygon::rectangle(GridPoint::m(x, 0.0), GridPoint::m(to_x, 100.0))
+    }
+
+    #[test]
+    fn a_block_with_a_river_has_banks_and_a_lake_is_water() {
+        let with = |to_x: f64, class: &str| {
+            let area = Area { id: 1, polygon: rectangle(0.0, to_x), class: class.into() };
+            let mut city = City::empty(Frame::null_island(), rectangle(0.0, 200.0));
+            match class {
+                "water" => city.water = Arc::new(vec![area]),
+                _ => city.land_use = Arc::new(vec![area]),
+            }
+            OpenLand::of(&city).keeps_open(&rectangle(0.0, 100.0))
+        };
+        assert_eq!(with(60.0, "water"), None);
+        assert_eq!(with(96.0, "water").as_deref(), Some("water"));
+        assert_eq!(with(60.0, "park").as_deref(), Some("park"));
+        assert_eq!(with(40.0, "park"), None);
+    }
 }

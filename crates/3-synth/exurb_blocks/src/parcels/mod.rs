@@ -155,8 +155,6 @@ struct CutBlock {
 
 /// Narrowest pavement taken over from an example, in metres.
 const LEAST_PAVEMENT_M: f64 = 0.5;
-/// From this share of given open land on, a block stays open.
-const GIVEN_OPEN_SHARE: f64 = 0.5;
 
 fn cut_block(
     city: &City,
@@ -173,13 +171,13 @@ fn cut_block(
         source: donor.map(|d| d.source.clone()),
         part: donor.map(|d| format!("block {}", d.id).into()),
     };
-    let given = open.share(&block.polygon).filter(|(_, s)| *s >= GIVEN_OPEN_SHARE);
+    let given = open.keeps_open(&block.polygon);
     let drawn = donor.and_then(|d| d.open.clone()).filter(|_| params.open_land);
     // Where the example's houses stand at the kerb, the pavement is as narrow.
     let setback_m = donor.and_then(|d| d.setback_m).unwrap_or(params.pavement);
     let pavement_m = params.pavement.min(setback_m.max(LEAST_PAVEMENT_M));
     let ground = offset::inset(&block.polygon, pavement_m);
-    if let Some(land_use) = given.as_ref().map(|(class, _)| class.clone()).or(drawn) {
+    if let Some(land_use) = given.clone().or(drawn) {
         let lots = ground.into_iter().map(whole_lot).collect();
         let (land_use, is_new_area) = (Some(land_use), given.is_none());
         return CutBlock { lots, land_use, rest_use: None, pavement_m, is_new_area, provenance };

@@ -237,6 +237,12 @@ impl Ground {
         is_inside && !is_given(&edge.data)
     }
 
+    /// Does a street end there that runs on where there is no telling where to?
+    pub fn runs_on(&self, streets: &StreetGraph, node: NodeId) -> bool {
+        let here = streets.node(node);
+        here.data.cut || (streets.degree(node) == 1 && !self.target.contains(here.at))
+    }
+
     /// Streets of the city around get back the level that they had.
     pub fn restore_levels(&self, streets: &mut StreetGraph) {
         let Some(around) = &self.around else { return };

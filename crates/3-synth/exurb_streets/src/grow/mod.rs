@@ -8,7 +8,8 @@
 //! from the starts over the whole target ([`growth`]: [`placing`] copies, [`drawing`] chooses,
 //! [`procedural`] makes and connects); 4 local streets grow in every cell between them ([`cells`]);
 //! both passes fill what was left empty ([`fill`]); 5 dangling ends go and the target cuts
-//! ([`finish`]); 6 local edits bring the whole nearer to the example ([`polish`]).
+//! ([`finish`]); 6 local edits bring the whole nearer to the example ([`polish`]); 7 oneways that are
+//! traps become two-way ([`oneways`]).
 //!
 //! Which example grows where, and how it is turned, says the [`plan`], with [`domains`] where areas
 //! have examples of their own ([`character`] chooses by ground, [`like`] by a drawn fragment); what is given and what lies around, the [`ground`]; what water and
@@ -43,6 +44,7 @@ mod learn;
 mod lesson;
 mod like;
 mod network;
+mod oneways;
 mod params;
 mod patch;
 mod placing;

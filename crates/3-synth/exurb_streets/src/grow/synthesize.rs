@@ -17,7 +17,7 @@ use super::network::{Coherent, Network, Piece, Standing, Vertex};
 use super::placing;
 use super::plan::{Plan, Start};
 use super::polish::{Profile, Weights};
-use super::{bridges, fill, finish, polish, unreached};
+use super::{bridges, fill, finish, oneways, polish, unreached};
 
 /// Growth goes on beyond the target by a large block of the example, so that blocks at its edge close
 /// and its edge looks like its middle; by no more and no less than this.
@@ -52,7 +52,10 @@ pub fn synthesize(ground: &Ground, plan: &Plan, run: &Run) -> Result<StreetGraph
         let area_km2 = ground.target.area_m2() / 1e6;
         return Err(Error::Nothing { starts: plan.starts.len(), area_km2 });
     }
-    Ok(ground.whole(streets))
+    let mut streets = ground.whole(streets);
+    let runs_on = |streets: &StreetGraph, node: NodeId| ground.runs_on(streets, node);
+    oneways::open_traps(&mut streets, runs_on, |streets, id| ground.may_remove(streets, id.0));
+    Ok(streets)
 }
 
 /// Local edits that bring the network nearer to the examples.
