@@ -4,7 +4,7 @@
 //! side. Where the map folds an element or carries it out of the new outline (it may in concave ones),
 //! the element is carried along the outline instead: as far along its side, as deep inside.
 
-use exurb_geom::{GridPoint, MeanValueMap, Polygon, Vec2};
+use exurb_geom::{GridPoint, MeanValueMap, Polygon, RowPolygon, Vec2};
 
 use super::correspondence::Correspondence;
 use super::groups::{Element, Group};
@@ -16,7 +16,7 @@ pub struct Guidance<'a> {
     /// The new outline.
     pub target: &'a Ring,
     /// The new domain.
-    pub domain: &'a Polygon,
+    pub domain: RowPolygon<'a>,
     /// Which place belongs to which.
     pub link: &'a Correspondence,
     map: Option<MeanValueMap>,
@@ -30,6 +30,7 @@ impl<'a> Guidance<'a> {
         domain: &'a Polygon,
         link: &'a Correspondence,
     ) -> Self {
+        let domain = RowPolygon::new(domain);
         Self { target, domain, link, map: link.map(source, target) }
     }
 

@@ -311,9 +311,10 @@ impl<'a> Work<'a> {
 
     /// Does it stand inside, give or take?
     pub(super) fn is_inside(&self, rings: &[Vec<Vec2>]) -> bool {
-        let domain = self.guidance.domain;
+        let domain = &self.guidance.domain;
         rings[0].iter().all(|p| {
-            domain.contains(GridPoint::round(*p)) || domain.boundary_distance_m(*p) < OVER_M
+            domain.contains(GridPoint::round(*p))
+                || domain.polygon().boundary_distance_m(*p) < OVER_M
         })
     }
 }
