@@ -102,6 +102,12 @@ impl Pending {
     }
 }
 
+/// Is `file` one of these that are there already, by whatever name?
+pub fn is_one_of<'a>(file: &Path, others: impl IntoIterator<Item = &'a Path>) -> bool {
+    let place = |f: &Path| fs::canonicalize(f).ok();
+    place(file).is_some_and(|to| others.into_iter().any(|f| place(f).as_ref() == Some(&to)))
+}
+
 impl Drop for Pending {
     fn drop(&mut self) {
         // After a commit there is nothing left to remove.

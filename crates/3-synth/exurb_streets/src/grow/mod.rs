@@ -64,7 +64,7 @@ use std::sync::Arc;
 
 use exurb_city::hierarchy::{Hierarchy, assign_levels};
 use exurb_city::street_graph::StreetGraph;
-use exurb_city::{Area, City, Edit, block};
+use exurb_city::{City, Edit, block};
 use exurb_operation::{Card, Example, Failure, Operation, Run, Scope};
 
 use character::Character;
@@ -171,23 +171,19 @@ impl Operation for Grow {
         let mut streets = lawful(city, &ground, streets, run);
         assign_levels(&mut streets, &Hierarchy::default());
         run.phase("blocks");
-        let mut land_use: Vec<Area> =
-            city.land_use.iter().cloned().chain(relief::parks(params)).collect();
-        land_use.iter_mut().zip(1..).for_each(|(area, id)| area.id = id);
-        if ground.around.is_some() {
+        let mut edit = if ground.around.is_some() {
             ground.restore_levels(&mut streets);
-            let edit = exurb_city::redevelop(city, streets, &ground.target);
-            return Ok(Edit { land_use: Some(land_use), ..edit });
-        }
-        let blocks = block::derive(&streets);
-        let gates = learned.vocabularies.first().map(|v| v.gates.clone());
-        Ok(Edit {
-            streets: Some(streets),
-            blocks: Some(blocks),
-            example_gates: gates,
-            land_use: Some(land_use),
-            ..Edit::default()
-        })
+            exurb_city::redevelop(city, streets, &ground.target)
+        } else {
+            let blocks = block::derive(&streets);
+            let example_gates = learned.vocabularies.first().map(|v| v.gates.clone());
+            let (streets, blocks) = (Some(streets), Some(blocks));
+            Edit { streets, blocks, example_gates, ..Edit::default() }
+        };
+        let mut land_use = edit.land_use.take().unwrap_or_else(|| city.land_use.to_vec());
+        land_use.extend(relief::parks(params));
+        land_use.iter_mut().zip(1..).for_each(|(area, id)| area.id = id);
+        Ok(Edit { land_use: Some(land_use), ..edit })
     }
 }
 

@@ -17,7 +17,7 @@ use exurb_report::{Column, Report};
 use serde_json::{Value, json};
 
 use crate::options::RunOptions;
-use crate::pending::Pending;
+use crate::pending::{Pending, is_one_of};
 use crate::problem::Problem;
 use crate::{job, report};
 
@@ -151,8 +151,7 @@ fn writable(
         let wanted = endings[0];
         return Err(Problem::usage(format!("{option} {}: name a .{wanted} file", file.display())));
     }
-    let place = |f: &Path| std::fs::canonicalize(f).ok();
-    if place(file).is_some_and(|to| inputs.iter().any(|from| place(from).as_ref() == Some(&to))) {
+    if is_one_of(file, inputs.iter().copied()) {
         let message = "it is one of the cities compared and would be lost; name another file";
         return Err(Problem::usage(format!("{option} {}: {message}", file.display())));
     }

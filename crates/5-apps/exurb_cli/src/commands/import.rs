@@ -10,6 +10,7 @@ use exurb_recipe::{Export, Seconds, Source};
 
 use crate::options::{DryOptions, OutputOptions, PartOptions, RunOptions, TerrainOptions};
 use crate::output::Outputs;
+use crate::pending::is_one_of;
 use crate::problem::Problem;
 use crate::{job, summary};
 
@@ -41,6 +42,10 @@ pub fn command() -> Command {
 pub fn run(matches: &ArgMatches) -> Result<(), Problem> {
     let options = Options::from_arg_matches(matches).map_err(|e| Problem::usage(e.to_string()))?;
     let OutputOptions { output, to } = options.output.clone();
+    if is_one_of(&output, options.inputs.iter().map(PathBuf::as_path)) {
+        let message = "it is the map to import and would be lost; name another file with -o";
+        return Err(Problem::usage(format!("{}: {message}", output.display())));
+    }
     let export = Export { file: output.clone(), to, ..Export::default() };
     let (city, seconds) = job::work(&options.run, 1, |run| {
         let outputs = Outputs::prepare(&[export], Path::new(""))?;

@@ -34,6 +34,31 @@ fn a_failure_leaves_the_file_that_was_there() {
 }
 
 #[test]
+fn an_import_does_not_replace_its_map() {
+    let folder = tempdir().unwrap();
+    small_city(folder.path(), "c.gpkg");
+    exurb(folder.path(), &["export", "c.gpkg", "-o", "map.osm.pbf"]).ends(0);
+    let before = fs::read(folder.path().join("map.osm.pbf")).unwrap();
+    let args = ["import", "map.osm.pbf", "-o", "./map.osm.pbf"];
+    exurb(folder.path(), &args).ends(2).says("would be lost");
+    assert_eq!(fs::read(folder.path().join("map.osm.pbf")).unwrap(), before);
+}
+
+#[test]
+fn scopes_and_blocks_that_are_not_there_are_refused() {
+    let folder = tempdir().unwrap();
+    small_city(folder.path(), "c.gpkg");
+    let far = r#"{"type":"Polygon","coordinates":[[[1.5,1],[1.6,1],[1.6,1.1],[1.5,1.1],[1.5,1]]]}"#;
+    fs::write(folder.path().join("far.geojson"), far).unwrap();
+    let example = ["--example", "builtin:grid", "-o", "d.gpkg"];
+    let scope = ["streets", "grow", "c.gpkg", "--scope", "far.geojson"];
+    exurb(folder.path(), &[&scope[..], &example].concat()).ends(2).says("outside the city");
+    let blocks = ["blocks", "parcels", "c.gpkg", "--blocks", "99999"];
+    exurb(folder.path(), &[&blocks[..], &example].concat()).ends(2).says("no block 99999");
+    assert_eq!(listing(folder.path()), ["c.gpkg", "far.geojson"]);
+}
+
+#[test]
 fn every_format_is_written_and_the_readable_ones_are_read_again() {
     let folder = tempdir().unwrap();
     small_city(folder.path(), "c.gpkg");
