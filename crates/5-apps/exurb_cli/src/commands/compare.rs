@@ -40,7 +40,7 @@ struct Options {
     /// Other cities, whose mean distance scores 0 [default: a built-in panel of nine cities]
     #[arg(long, value_name = "CITY", num_args = 1..)]
     floor: Vec<PathBuf>,
-    /// Check the scale itself instead: score unseen parts, other cities, spoilt copies and streets by
+    /// Check the scale itself instead: score other parts, other cities, spoilt copies and streets by
     /// rule against each of these cities
     #[arg(long, value_name = "CITY", num_args = 1.., conflicts_with_all = ["city", "with", "held_out", "floor"])]
     yardstick: Vec<PathBuf>,
@@ -58,7 +58,7 @@ struct Options {
 /// The command.
 pub fn command() -> Command {
     let about = "How like its example a city is: scores between another city (0) and the example's \
-                 own unseen part (1)";
+                 own other part (1)";
     Options::augment_args(Command::new("compare")).about(about)
 }
 
