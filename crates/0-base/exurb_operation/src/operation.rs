@@ -205,7 +205,7 @@ impl<O: Operation> AnyOperation for Erased<O> {
             return Err(Failure::Example { operation, message });
         }
         if let Some(message) = scope.misses(city) {
-            return Err(Failure::City { operation, message });
+            return Err(Failure::Params { operation, message });
         }
         let run = run.named(&operation);
         run.check()?;

@@ -48,7 +48,7 @@ fn an_import_does_not_replace_its_map() {
 fn scopes_and_blocks_that_are_not_there_are_refused() {
     let folder = tempdir().unwrap();
     small_city(folder.path(), "c.gpkg");
-    let far = r#"{"type":"Polygon","coordinates":[[[1.5,1],[1.6,1],[1.6,1.1],[1.5,1.1],[1.5,1]]]}"#;
+    let far = r#"{"type":"Polygon","coordinates":[[[24,60],[24.1,60],[24.1,60.1],[24,60]]]}"#;
     fs::write(folder.path().join("far.geojson"), far).unwrap();
     let example = ["--example", "builtin:grid", "-o", "d.gpkg"];
     let scope = ["streets", "grow", "c.gpkg", "--scope", "far.geojson"];
