@@ -156,3 +156,16 @@ pub fn is_ours(generator: &str) -> bool {
     let version = generator.strip_prefix(crate::GENERATOR).and_then(|v| v.strip_prefix(' '));
     version.is_some_and(|v| v.starts_with(|c: char| c.is_ascii_digit()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_only_cut_an_extract_did_not_write_its_data() {
+        assert!(is_ours("exurb 0.1.0"));
+        for other in ["exurb", "exurb data/cut_osm.py", "exurbia 1", "osmium/1.16"] {
+            assert!(!is_ours(other), "{other}");
+        }
+    }
+}

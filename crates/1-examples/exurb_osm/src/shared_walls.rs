@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 
 use exurb_geom::{GridPoint, Polygon, SegmentGrid, polyline};
 
-/// A corner no farther from a wall stands in it, in millimetres.
+/// A corner no farther from a wall stands in it, in millimetres: OSM's centimetre could move it across.
 const TOLERANCE_MM: i32 = 10;
 
 /// The rings of all polygons, outer ones first, each with the corners of the others that stand in

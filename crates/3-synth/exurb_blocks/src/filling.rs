@@ -75,8 +75,8 @@ pub fn written(city: &City, mut blocks: Vec<Block>, fillings: Vec<Option<Filling
     }
 }
 
-/// Corners of footprints sharper than this are what cutting and moving walls left over, 6°.
-const SHARP_RAD: f64 = 0.1;
+/// Corners of footprints sharper than this are what fitting, cutting and moving walls left over, 6°.
+pub const SHARP_RAD: f64 = 0.1;
 /// Cracks in them are filled where that adds no more, in m².
 const CRACK_M2: f64 = 0.05;
 

@@ -188,3 +188,32 @@ fn each_cadastral_file_alone() {
         assert!(city.streets.edge_count() >= streets, "{name}: {}", city.streets.edge_count());
     }
 }
+
+/// Streets of another program that a rectangle clipped, turned against the city's plane: their ends are
+/// cut, said in a warning, and stay so when the city is written and read.
+#[test]
+fn ends_that_a_turned_clip_left_are_no_dead_ends() {
+    let east = exurb_geom::trig::unit(0.3);
+    let at = |x: f64, y: f64| {
+        let p = (east * x + east.perp() * y) * 0.001;
+        format!("[{},{}]", 9.0 + p.x, 50.0 + p.y)
+    };
+    let street = |from: String, to: String| {
+        format!(
+            r#"{{"type":"Feature","properties":{{"highway":"residential"}},
+            "geometry":{{"type":"LineString","coordinates":[{from},{to}]}}}}"#
+        )
+    };
+    let mut streets = vec![street(at(0.5, 0.5), at(0.5, 0.9))];
+    for i in -3..=3 {
+        let i = f64::from(i);
+        streets.push(street(at(i, -4.0), at(i, 4.0)));
+        streets.push(street(at(-4.0, i), at(4.0, i)));
+    }
+    let text = format!(r#"{{"type":"FeatureCollection","features":[{}]}}"#, streets.join(","));
+    let imported = read(&text, "clip").unwrap();
+    assert!(imported.warnings.iter().any(|w| w.contains("28 ends")), "{:?}", imported.warnings);
+    let cut = |city: &City| city.streets.nodes().filter(|(_, n)| n.data.cut).count();
+    assert_eq!(cut(&imported.city), 28);
+    assert_eq!(cut(&read(&written(&imported.city), "clip").unwrap().city), 28);
+}

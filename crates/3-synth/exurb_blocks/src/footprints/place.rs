@@ -5,6 +5,7 @@ use exurb_geom::{GridPoint, OrientedBox, Polygon, Vec2, grid, polyline, trig};
 
 use super::lot::Lot;
 use super::row;
+use crate::filling::SHARP_RAD;
 use crate::library::BuildingSample;
 
 /// How a sample is to stand on a lot.
@@ -42,9 +43,7 @@ pub fn place(lot: &Lot, wish: &Wish<'_>) -> Option<Polygon> {
     found.or_else(|| detached(lot, wish)).and_then(without_hairs).filter(|p| is_sound(p, wish))
 }
 
-/// Corners sharper than this go, 6°: fitted walls can overshoot by a hand's breadth.
-const SHARP_RAD: f64 = 0.1;
-
+/// Fitted walls can overshoot by a hand's breadth.
 fn without_hairs(polygon: Polygon) -> Option<Polygon> {
     without_spikes(&polygon, SHARP_RAD, f64::INFINITY)
 }
